@@ -10,7 +10,7 @@ from pathlib import Path
 
 from isa_ros.actuator.link import LinkSheet
 from isa_ros.config.robots.contacts import CONTACT
-from isa_ros.config.robots.drives import Cylinder, DRIVE
+from isa_ros.config.robots.drives import DRIVE, Linkage
 from isa_ros.config.robots.start import RobotStartValues, START
 from isa_ros.config.runs.actuator_config import ACTUATOR
 from isa_ros.config.runs.emergency_stops import GROUP
@@ -25,7 +25,6 @@ from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.dump import LagDump, NoneDump, ValveDump
-from isa_ros.surroundings.linkage_sheet import Direct, FourBar, SliderCrank
 from isa_ros.surroundings.return_line import ReturnLine
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.text.marked import with_parts
@@ -80,7 +79,7 @@ def page(text: str) -> str:
         'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
         'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS),
         'robot': keys(RobotConfig.KEYS), 'drive': keys(DRIVE),
-        'linkage': by_kind(Direct | SliderCrank | FourBar | Cylinder), 'contact': keys(CONTACT),
+        'linkage': by_kind(Linkage), 'contact': keys(CONTACT),
         'joints': keys(START), 'root': parameters(RobotStartValues)})
 
 

@@ -7,10 +7,10 @@ Write the tables of docs/signals.md from the fields of all samples.
 from collections.abc import Sequence
 from pathlib import Path
 
-from isa_ros.core.fields import Field
-from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.core.fields import Field
+from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.surroundings.bodies.leg.leg import sample_fields
 from isa_ros.surroundings.kept_ports import port_fields
 from isa_ros.surroundings.mechanism_body import motion_fields

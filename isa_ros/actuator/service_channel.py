@@ -9,11 +9,13 @@ the plant, the load and the link itself change at once: they are no commands.
 """
 
 from collections.abc import Mapping
+from itertools import compress
 
 from isa_ros.actuator.frames import SLOTS
 from isa_ros.actuator.tunable import GAINS, LOAD
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import ChangingValues
+from isa_ros.core.saved_numbers import SavedNumbers
 from isa_ros.core.timebase import PLANT_STEP_NS
 import numpy as np
 
@@ -37,7 +39,7 @@ def nothing(travels: np.ndarray) -> np.ndarray:
     return np.full((SLOTS + 1, 1 + int(travels.sum())), -1.0)
 
 
-class ServiceChannel:
+class ServiceChannel(SavedNumbers):
     """
     What is on its way to the REU: the values as they were handed over at some plant steps.
 
@@ -48,8 +50,9 @@ class ServiceChannel:
     def __init__(
             self, link: np.record, state: np.record, values: ChangingValues,
             travels: np.ndarray) -> None:
+        super().__init__(
+            values.owner, ['plant step', *compress(values.names, travels)], nothing(travels))
         self._link, self._state, self._values, self._travels = link, state, values, travels
-        self._rows = nothing(travels)
 
     def clear(self) -> None:
         """Begin a run with nothing on its way."""
@@ -109,16 +112,3 @@ class ServiceChannel:
         self._keep(self._rows[:n][~is_stale])
         if is_stale[-1]:
             self._values.withdraw(self._travels, brought)
-
-    @property
-    def nbytes(self) -> int:
-        """Return the size of a `snapshot`."""
-        return self._rows.nbytes
-
-    def snapshot(self) -> bytes:
-        """Return the state as bytes for `restore`."""
-        return self._rows.tobytes()
-
-    def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot`, whose numbers are finite."""
-        self._rows[:] = np.frombuffer(snapshot).reshape(self._rows.shape)

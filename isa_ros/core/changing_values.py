@@ -8,7 +8,7 @@ it what a bag has as in force, which is so at once.
 
 from collections.abc import Mapping, Sequence
 
-from isa_ros.errors import ConfigError
+from isa_ros.core.saved_numbers import SavedNumbers
 import numpy as np
 
 OVER, OFF, RECORDED = '+', '-', '='
@@ -21,7 +21,7 @@ def bare(name: str) -> str:
     return name[1:] if name[:1] in (OVER, OFF, RECORDED) else name
 
 
-class ChangingValues:
+class ChangingValues(SavedNumbers):
     """
     Values in force before the last tick, in force now, and in force from the next tick on.
 
@@ -30,11 +30,9 @@ class ChangingValues:
     """
 
     def __init__(self, owner: str, names: Sequence[str], first: Sequence[float]) -> None:
-        self._owner = owner
-        self._place = {name: k for k, name in enumerate(names)}
-        self._names = list(names)
         self._first = np.array(first, float)
-        self._rows = np.tile(self._first, (5, 1))
+        super().__init__(owner, names, np.tile(self._first, (5, 1)))
+        self._place = {name: k for k, name in enumerate(names)}
         self._rows[_IS_OVER] = 0.0
         self.is_settled = True
         """Whether no value changed at the start of the last tick, or changes at the next."""
@@ -134,7 +132,7 @@ class ChangingValues:
     def accepted(self) -> dict[str, float]:
         """Return the values of the next tick that are not the first ones."""
         values = self.wanted
-        return {self._names[k]: float(values[k])
+        return {self.names[k]: float(values[k])
                 for k in np.flatnonzero(values != self._first)}
 
     @property
@@ -151,31 +149,9 @@ class ChangingValues:
 
     def _where(self, row: int, differs: np.ndarray) -> dict[str, float]:
         values = self._rows[row]
-        return {self._names[k]: float(values[k]) for k in np.flatnonzero(differs)}
-
-    @property
-    def nbytes(self) -> int:
-        """Return the size of a `snapshot`."""
-        return self._rows.nbytes
-
-    def snapshot(self) -> bytes:
-        """Return the state as bytes for `restore`."""
-        return self._rows.tobytes()
+        return {self.names[k]: float(values[k]) for k in np.flatnonzero(differs)}
 
     def restore(self, snapshot: bytes) -> None:
-        """
-        Continue from a `snapshot`.
-
-        Raises
-        ------
-        ConfigError
-            A value is not finite.
-
-        """
-        rows = np.frombuffer(snapshot).reshape(self._rows.shape)
-        for row, k in np.argwhere(~np.isfinite(rows)):
-            raise ConfigError(
-                f'{self._owner}: saved state has {self._names[k]} = {rows[row, k]}, '
-                'must be finite')
-        self._rows[:] = rows
+        """Continue from a `snapshot`; as `SavedNumbers.restore`."""
+        super().restore(snapshot)
         self.is_settled = False

@@ -81,7 +81,10 @@ class FourBar(Joint):
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=2e3)
 
 
-def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
+OneJointLinkage = Direct | SliderCrank | FourBar
+
+
+def linkage_record(joint: OneJointLinkage | Joint) -> np.record:
     """Return the `LINKAGE` record of a joint's sheet, SI."""
     row: np.record = rows_of(1, kernels.LINKAGE)[0]
     row['sense'] = joint.sense

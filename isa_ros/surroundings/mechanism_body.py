@@ -184,15 +184,16 @@ class MechanismBody:
         """
         Return 1/m_eff, k and d of an actuator  (L13).
 
-        At a cylinder's dead centre 1/m_eff is 0, and k and d per its metre are without bounds:
-        they are cut to what a tick resolves, |k| <= pi^2/H^2 and |d| <= 1/H.
+        Near a cylinder's dead centre 1/m_eff vanishes, and k and d per its metre are without
+        bounds: they are cut to what a tick resolves, |k| <= pi^2/H^2 and |d| <= 1/H, and are 0
+        where its force moves nothing.
         """
         mechanism, state = self._mechanism, self._state
         push = forces.copy()
         push[j] += PROBE_FORCE
         pushed = self._motion(state, push)
         inverse_mass = float(pushed.acceleration[j] - now.acceleration[j]) / PROBE_FORCE
-        if not self._has_response:
+        if not self._has_response or inverse_mass == 0.0:
             return inverse_mass, 0.0, 0.0
         assert pushed.generalised is not None and now.generalised is not None
         u = (pushed.generalised - now.generalised) / (PROBE_FORCE * inverse_mass)

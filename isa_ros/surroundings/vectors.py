@@ -1,5 +1,7 @@
 """Vectors (3,) and matrices (9,), row by row, as tuples in kernels, and their products."""
 
+import math
+
 from isa_ros.core.kernel import kernel
 
 ZERO = (0.0, 0.0, 0.0)
@@ -41,6 +43,15 @@ def minus(a, b):
 def scaled(factor, a):
     """Return the product of a number and a vector."""
     return factor * a[0], factor * a[1], factor * a[2]
+
+
+@kernel
+def first_broken(y):
+    """Return the place of the first number that is not finite, or -1."""
+    for i in range(len(y)):
+        if not math.isfinite(y[i]):
+            return i
+    return -1
 
 
 @kernel

@@ -3,6 +3,7 @@
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import COMMAND, LOAD_PORT
+from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
 from tests.actuator.test_link import actuator, linked, TICK
@@ -144,6 +145,19 @@ def test_a_saved_state_has_what_is_on_its_way(saved_at):
     twin.restore(own.snapshot())
     assert changes(twin, 30) == changes(own, 30)
     assert twin.snapshot() == own.snapshot()
+
+
+@pytest.mark.parametrize('broken', [np.nan, np.inf])
+def test_a_broken_number_on_its_way_is_refused(broken):
+    """It would be a gain in force one tick later."""
+    own = actuator(linked(delay_cycles=4.0))
+    own.tune({KP: 1.2e-7})
+    own.tick()
+    saved = np.frombuffer(own.snapshot()[8:], float).copy()
+    places = np.flatnonzero(saved == 1.2e-7)
+    saved[places[-1]] = broken      # behind the values that are accepted
+    with pytest.raises(ConfigError, match=rf'^isa_v5: saved state has {KP} = {broken}, must be'):
+        own.restore(own.snapshot()[:8] + saved.tobytes())
 
 
 def test_a_reset_sends_what_was_tuned_again():

@@ -52,6 +52,37 @@ def test_the_smallest_forces_hold_the_load_at_rest() -> None:
         'back_position': 'rad', 'back_velocity': 'rad/s', 'back_force': 'Nm'}
 
 
+def test_at_rest_its_forces_are_assumed_to_stay() -> None:
+    """The means before t = 0 are those at rest: under the same force no slope  (L16)."""
+    body = MechanismBody(MassOnSpring(), mounting())
+    rest = LEVERS * WEIGHT / (LEVERS @ LEVERS)
+    for _ in range(3):
+        body.advance(replies_of(np.tile(rest[:, np.newaxis], 5)))
+        assert body._kept[0]['slope'] == pytest.approx([0.0, 0.0], abs=1e-6)
+        assert body._kept[0]['force'] == pytest.approx(rest, rel=1e-9)
+
+
+def test_the_forces_of_a_tick_are_continued_into_the_next() -> None:
+    """Means on a line of 3 N and -5 N a window: its slope, and its value at the end  (L16)."""
+    body = moving_body(False)
+    slope = np.array([3.0, -5.0]) * 5 / STEP
+    assert body._kept[0]['slope'] == pytest.approx(slope, rel=1e-9)
+    assert body._kept[0]['force'] == pytest.approx(
+        np.array([500.0 + 270.0 + 6.0, 200.0 - 10.0]) + 0.5 * STEP * slope, rel=1e-9)
+
+
+def test_forces_at_rest_are_found_where_forces_do_not_add_up() -> None:
+    """A load that gives way as F + 1e-4 F^2: one round of probes from 0 leaves 0.3 m/s2."""
+    class Yielding(MassOnSpring):
+        """Its first actuator has more than its force."""
+
+        def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
+            """Return it."""
+            return super().motion(state, forces + [1e-4 * forces[0] ** 2, 0.0])
+    forces = holding_forces(Yielding(), 2)
+    assert LEVERS @ (forces + [1e-4 * forces[0] ** 2, 0.0]) == pytest.approx(WEIGHT, rel=1e-6)
+
+
 def test_a_load_that_no_actuator_holds_is_refused() -> None:
     class Free(MassOnSpring):
         """Its second actuator has no lever, and falls."""
@@ -121,7 +152,8 @@ def test_a_copy_ends_the_tick_where_the_mechanism_does(has_response: bool) -> No
         assert y[1] == pytest.approx(end.velocity[j], rel=0.0, abs=1e-6)
 
 
-def test_at_a_dead_centre_the_port_stays_bounded() -> None:
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_at_a_dead_centre_the_port_stays_bounded(sign: float) -> None:
     """A lever of 1e-7: k and d per its metre are without bounds, and cut to those of a tick."""
     class DeadCentre(MassOnSpring):
         """Its first actuator hardly moves the cart, and its lever changes with the place."""
@@ -129,10 +161,10 @@ def test_at_a_dead_centre_the_port_stays_bounded() -> None:
         def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
             """Return it."""
             own, (q, v) = super().motion(state, forces), state
-            lever = 1e-7 + 0.5 * q
+            lever = 1e-7 + sign * 0.5 * q
             return own._replace(
                 position=np.array([own.position[0], own.position[1]]),
-                acceleration=np.array([lever * own.generalised[0] - 40.0 * q - 9e3 * v,
+                acceleration=np.array([lever * own.generalised[0] - sign * (40.0 * q + 9e3 * v),
                                        own.acceleration[1]]))
     mechanism = DeadCentre()
     mechanism.state = np.array([0.0, 0.1])
@@ -144,9 +176,26 @@ def test_at_a_dead_centre_the_port_stays_bounded() -> None:
     ports = np.zeros(N, LOAD_PORT)
     body.ports(ports)
     first = ports[ROWS[0]]
-    assert abs(first['stiffness']) == pytest.approx(np.pi ** 2 / STEP ** 2, rel=1e-12)
-    assert abs(first['damping']) == pytest.approx(1.0 / STEP, rel=1e-12)
+    assert first['stiffness'] == pytest.approx(sign * np.pi ** 2 / STEP ** 2, rel=1e-12)
+    assert first['damping'] == pytest.approx(sign / STEP, rel=1e-12)
     assert abs(ports[ROWS[1]]['stiffness']) < 1e5
+
+
+def test_where_a_force_moves_nothing_the_port_has_no_response() -> None:
+    """At the dead centre itself: 1/m = 0, and no direction to probe along."""
+    class Blocked(MassOnSpring):
+        """Its first actuator has no lever and stands."""
+
+        def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
+            """Return it."""
+            own = super().motion(state, np.array([0.0, forces[1]]))
+            return own._replace(acceleration=np.array([0.0, own.acceleration[1]]))
+    body = MechanismBody(Blocked(), mounting(), has_response=True)
+    ports = np.zeros(N, LOAD_PORT)
+    body.ports(ports)
+    first, second = ports[ROWS]
+    assert [first['inverse_mass'], first['stiffness'], first['damping']] == [0.0, 0.0, 0.0]
+    assert second['stiffness'] == pytest.approx(STIFFNESS / MASS, rel=1e-6)
 
 
 def test_it_advances_by_its_own_step_and_goes_on_from_a_snapshot() -> None:

@@ -11,7 +11,7 @@ from isa_ros.config.robots.tree import Tree
 from isa_ros.config.text.keys import (
     FLAG, InText, Key, KeyTable, Named, ParameterSet, PLACED_NAME, TEXT, Value)
 from isa_ros.config.text.names import refuse_bad_name
-from isa_ros.config.text.parameter_sets import build_one_of
+from isa_ros.config.text.parameter_sets import build_one_of, members
 from isa_ros.config.text.sections import (
     KIND_KEYS, merge, Place, refuse_unknown, Section, section_at, SourcedValue, written)
 from isa_ros.config.text.yaml_text import Tree as YamlTree
@@ -22,7 +22,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Points, RobotDrive, RobotFrame, RobotLink, vector)
 from isa_ros.surroundings.linkage_sheet import (
-    Direct, FourBar, Joint, linkage_record, SliderCrank)
+    Joint, linkage_record, OneJointLinkage)
 import numpy as np
 
 _RANGE_DIGITS = 9       # of the range of a joint in deg: 1e-9 deg
@@ -40,7 +40,7 @@ class Cylinder(Parameters):
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=1e5)
 
 
-Linkage = Direct | SliderCrank | FourBar | Cylinder
+Linkage = OneJointLinkage | Cylinder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +121,9 @@ def drives_of(
         section = _linkage_section(own, linkages, below)
         kind = next((entry.value for key in KIND_KEYS
                      if isinstance(entry := section.get(key), SourcedValue)), None)
+        if kind is None:
+            raise ConfigError(below.has(
+                f'lacks linkage, one of {", ".join(members(Linkage))}, or like'))
         actuator = own.get('actuator', name)
         refuse_bad_name(actuator, str(below / 'actuator'), is_placed=True)
         if kind == 'cylinder':

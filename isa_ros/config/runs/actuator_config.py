@@ -209,7 +209,7 @@ def _load_section(
             return None
         kinds = members(LocalLoad) if model is None else model.loads
         raise ConfigError(
-            f'{place} has no load and moves no joint of the leg; valid kinds of '
+            f'{place} has no load and moves no joint of a body; valid kinds of '
             f'load: {", ".join(kinds)}')
     load: Section = values['load']
     return load if model is None else load_section(

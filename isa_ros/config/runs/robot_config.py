@@ -26,7 +26,6 @@ from isa_ros.config.runs.body_config import BodyConfig, Made
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
     choice_of, InText, Key, KeyTable, Layer, Named, ParameterSet, TEXT, Value)
-from isa_ros.config.text.names import placed
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field
@@ -98,6 +97,12 @@ class RobotConfig(BodyConfig):
     contacts: tuple[ContactConfig, ...]
     start: RobotStartConfig
     imus: tuple[UnitConfig, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Give the drives the actuators of ``joints``, which a namespace renames."""
+        moved = dict(self.joints)
+        object.__setattr__(self, 'drives', tuple(
+            replace(own, actuator=moved[own.name]) for own in self.drives))
 
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
@@ -247,8 +252,8 @@ class RobotConfig(BodyConfig):
                         drive.linkage, JointLinkage) else self._at(drive, links[0]),
                     joint.low, joint.high, f'{joint.name}_position',
                     unit='rad' if joint.kind == 'revolute' else 'm')
-        return dict(sorted(found.items(), key=lambda item: list(
-            link.joint.name for link in self.tree.links).index(item[0])))
+        order = [link.joint.name for link in self.tree.links]
+        return dict(sorted(found.items(), key=lambda item: order.index(item[0])))
 
     def _at(self, drive: RobotDrive, link: int) -> Callable[[float], tuple[float, float]]:
         """Return what gives coordinate and lever of a cylinder over one joint."""
@@ -263,13 +268,6 @@ class RobotConfig(BodyConfig):
         """Return joints, pose of a free root, forces on the feet, readings of its units."""
         return robot_messages(self.prefix, self.sheet, list(zip(
             self.units(step_ns, seed=0), [own.link for own in self.imus])))
-
-    def in_namespace(self, namespace: str) -> 'RobotConfig':
-        """Return it in the namespace of a robot; as `BodyConfig.in_namespace`."""
-        robot = super().in_namespace(namespace)
-        assert isinstance(robot, RobotConfig)
-        return replace(robot, drives=tuple(replace(
-            own, actuator=placed(namespace, own.actuator)) for own in self.drives))
 
     def body(self, made: Made) -> Robot:
         """Return the robot; as `BodyConfig.body`."""

@@ -301,6 +301,10 @@ class KeyTable(ValueKind):
                         f'has {other} and {key.name}, must have only one of them'))
         values = {key.name: key.read(section, place) for key in self.keys}
         if self.rest is not None:
+            rest = self._rest_of(section)
+            rows = self.rest.kind.rows(rest, place)
+            if isinstance(rows, Mapping):
+                refuse_unknown(rest, [*self.names, *rows], place)
             values[self.rest.name] = self.rest.kind.read(self._rest_of(section), place)
         return values
 

@@ -167,6 +167,46 @@ def test_the_crane_moves_as_it_was_published(runs):
             pytest.approx(expected, abs=1e-9))
 
 
+def test_two_robots_have_their_own_actuators(tmp_path):
+    """Two legs of one file, each in its namespace: sheets are equal, actuators are not."""
+    path = tmp_path / 'pair.yaml'
+    path.write_text('name: pair\nrobots: {r1: {file: two_joint_leg}, r2: {file: two_joint_leg}}\n')
+    run = load_run(path)
+    assert [own.actuator for body in run.bodies for own in body.drives] == [
+        'r1/hip', 'r1/knee', 'r2/hip', 'r2/knee']
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
+def test_a_scenario_starts_a_robot_elsewhere(runs):
+    """What it leaves out is as before; a pose that is not possible is refused with its place."""
+    own = robot(runs['two_joint_leg'])
+    place = Place('scenario.yaml', 'bodies.body')
+    moved = own.started({'joints_deg': {'knee': -90.0}, 'yaw_deg': 30.0}, place, 1_000_000)
+    assert moved.start.joints_deg == {'hip': 30.0, 'knee': -90.0}
+    assert moved.start.joints_mm == {'slider': 590.0}
+    assert (moved.start.root.yaw_deg, own.start.root.yaw_deg) == (30.0, 0.0)
+    again = moved.started({'joints_mm': {'slider': 700.0}}, place, 1_000_000)
+    assert again.start.root.yaw_deg == 30.0
+    assert coordinates(again.start, again.tree) == pytest.approx(
+        [0.7, np.radians(30.0), np.radians(-90.0)])
+    assert moved.position_of('knee') != own.position_of('knee')
+    with pytest.raises(ConfigError, match='^scenario.yaml: bodies.body: the contact foot is 9.8'):
+        own.started({'joints_mm': {'slider': 579.0}}, place, 1_000_000)
+
+
+def test_a_unit_is_in_the_axes_of_its_link():
+    """On the foot, a fixed part of the calf whose axes are turned."""
+    own = robot(load_run(ROOT / 'config' / 'quadruped.yaml', {'body.imus': {
+        'foot': {'link': 'lf_foot', 'x_mm': 10.0, 'rate_hz': 500.0, 'gyro_bias': 0.01}}}))
+    [unit] = own.units(1_000_000, seed=3)
+    [frame] = [one for one in own.sheet.frames if one.name == 'lf_foot']
+    assert own.sheet.links[unit.link].name == 'lf_calf' and unit.rotation == frame.rotation
+    turned = np.array(frame.rotation) @ [0.01, 0.0, 0.0]
+    assert np.array(unit.place) - frame.place == pytest.approx(turned, abs=1e-15)
+    assert abs(turned[0]) < 1e-9 and (unit.period_ns, unit.gyro_bias) == (2_000_000, 0.01)
+    assert unit.key != own.units(1_000_000, seed=4)[0].key
+
+
 CRANE = 'body.drives.lift'
 LEG = 'body.drives.knee'
 
@@ -235,6 +275,10 @@ LEG = 'body.drives.knee'
     ('two_joint_leg', {'actuators.hip.model': 'smart_manifold'},
      'body.drives.hip: its actuator hip is rotary, must be of a linkage direct'),
     ('two_joint_leg', {f'{LEG}.actuator': 'hip'}, "body.drives.knee.actuator = 'hip' already mov"),
+    ('two_joint_leg', {'body.drives.hip': {}},
+     'body.drives.hip lacks linkage, one of direct, slider_crank, four_bar, cylinder, or like'),
+    ('two_joint_leg', {'body.start': {'joints': {'hip': 3.0}}},
+     'body.start.joints is unknown; the key is joints_deg'),
     ('quadruped', {'body.root': 'floating'}, "body.root = 'floating', must be one of free, fixed"),
     ('quadruped', {'body.start.height_mm': -1.0}, 'is 1 mm below the ground'),
 ])

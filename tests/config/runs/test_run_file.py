@@ -91,7 +91,7 @@ def test_an_inline_actuator_needs_a_load(tmp_path: Path) -> None:
     text = text.replace('    load: null\n', '')
     path = tmp_path / 'inline.yaml'
     path.write_text(text)
-    with pytest.raises(ConfigError, match='actuators.ram has no load and moves no joint of the l'):
+    with pytest.raises(ConfigError, match='actuators.ram has no load and moves no joint of a '):
         load_run(path)
     assert RunConfig.from_yaml(text).actuator('ram').load is None
 

@@ -27,6 +27,7 @@ from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet
+from isa_ros.surroundings.vectors import cross
 import numpy as np
 
 LINKS = ('slider_link', 'hip', 'thigh', 'calf')
@@ -58,12 +59,6 @@ def imu_record(sheet: Imu, key: int) -> np.record:
         place=[sheet.x_mm * MILLI, sheet.y_mm * MILLI, sheet.z_mm * MILLI],
         sigma=3 * [sheet.accelerometer_sigma] + 3 * [sheet.gyro_sigma],
         bias=3 * [sheet.accelerometer_bias] + 3 * [sheet.gyro_bias])
-
-
-@kernel
-def cross(a, b):
-    """Return a x b."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @kernel

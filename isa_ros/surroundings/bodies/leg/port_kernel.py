@@ -7,8 +7,6 @@ in ``ports`` and ``replies``. L1 is the port, L12-L14 are its coefficients for a
 are those of any body (`isa_ros.surroundings.port`).
 """
 
-import math
-
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
@@ -17,6 +15,7 @@ from isa_ros.surroundings.bodies.leg.motion import (
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
 from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports, resolved
+from isa_ros.surroundings.vectors import first_broken
 
 LEG_FIELDS = (
     Field('position', 'rad', 'joint angles', (3,)),
@@ -153,15 +152,6 @@ def mean_forces(replies, rows, window):
     """Return the actuators' mean forces in one window of the tick."""
     return (replies[rows[0]].mean_forces[window], replies[rows[1]].mean_forces[window],
             replies[rows[2]].mean_forces[window])
-
-
-@kernel
-def first_broken(y):
-    """Return the place of the first value that is not finite in a `ContinuousState`, or -1."""
-    for i in range(len(y)):
-        if not math.isfinite(y[i]):
-            return i
-    return -1
 
 
 @kernel

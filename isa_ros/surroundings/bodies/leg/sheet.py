@@ -14,8 +14,7 @@ from isa_ros.core.record import record, rows_of
 from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY
 from isa_ros.surroundings.bodies.leg.motion import LEG
 from isa_ros.surroundings.ground import Ground, ground_record
-from isa_ros.surroundings.linkage_sheet import (
-    Direct, FourBar, Joint, linkage_record, SliderCrank)
+from isa_ros.surroundings.linkage_sheet import Joint, linkage_record, OneJointLinkage
 import numpy as np
 
 JOINTS = ('haa', 'hfe', 'kfe')
@@ -64,9 +63,9 @@ class LegSheet(Parameters):
     """The data sheet of one leg on its rig."""
 
     body: RigidBodies
-    haa: Direct | SliderCrank | FourBar
-    hfe: Direct | SliderCrank | FourBar
-    kfe: Direct | SliderCrank | FourBar
+    haa: OneJointLinkage
+    hfe: OneJointLinkage
+    kfe: OneJointLinkage
     ground: Ground
 
     @property

@@ -17,7 +17,7 @@ from isa_ros.surroundings.bodies.robot.reach import along, motion_by
 from isa_ros.surroundings.bodies.robot.tree import coordinates, root_speeds, solve
 from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports
-from isa_ros.surroundings.vectors import dot, plus, scaled, three, ZERO
+from isa_ros.surroundings.vectors import dot, first_broken, plus, scaled, three, ZERO
 
 SUBSTEP_NS = 200_000        # longest Runge-Kutta step of a robot, a force window of a tick of 1 ms
 PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters
@@ -188,12 +188,3 @@ def robot_tick(state, step_ns, rows, links, speeds, drives, levers, contacts, sc
             tree.forces[j] = replies[rows[j]].force
         move(y, tree.forces, is_held, tree)
     return broken
-
-
-@kernel
-def first_broken(y):
-    """Return the place of the first value that is not finite, or -1."""
-    for i in range(len(y)):
-        if not math.isfinite(y[i]):
-            return i
-    return -1

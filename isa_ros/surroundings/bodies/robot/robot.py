@@ -24,6 +24,7 @@ from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
+from isa_ros.surroundings.vectors import first_broken
 import numpy as np
 
 ROUNDING = 1e-9     # of the length of a quaternion in a sheet
@@ -197,7 +198,7 @@ class Robot:
             A number of the state is not finite.
 
         """
-        self._refuse_broken(int(kernels.first_broken(self._state)))
+        self._refuse_broken(int(first_broken(self._state)))
         return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
                 + self._sample.tobytes())
 

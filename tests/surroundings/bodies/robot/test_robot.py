@@ -160,3 +160,18 @@ def test_a_unit_on_a_held_trunk_reads_gravity() -> None:
 def test_a_start_that_cannot_be_is_refused(changes: dict, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         made(start=replace(START, **changes))
+
+
+def test_a_long_flight_leaves_no_small_numbers() -> None:
+    """A shear decays in the air: to 0, not to denormal numbers; the quaternion keeps length 1."""
+    own = Held(made(release_ns=0))
+    own.tick(170)
+    snapshot = own.robot.snapshot()
+    at = 8 + 8 * 2      # behind the time: the place in the world, its z
+    own.robot.restore(snapshot[:at] + np.array(9.0).tobytes() + snapshot[at + 8:])
+    state = np.frombuffer(own.robot.snapshot(), np.float64, 19 + 18 + 16, 8)
+    assert np.count_nonzero(state[37:]) >= 4
+    own.tick(60)
+    state = np.frombuffer(own.robot.snapshot(), np.float64, 19 + 18 + 16, 8)
+    assert np.all(state[37:] == 0.0)
+    assert abs(math.sqrt(np.square(state[3:7]).sum()) - 1.0) < 1e-15
