@@ -100,8 +100,8 @@ def boom(n_cylinders: int, height: float = 0.4) -> RobotSheet:
 
 
 def test_cylinders_on_one_joint_share_its_load() -> None:
-    """m g x_c = F times the distance of the pin from the cylinder's line, 0.4 m of the 0.5 m."""
-    whole = 60.0 * 9.80665 * 0.75 / (0.5 * 0.4 / 0.5)
+    """Gravity: m g x_c = F times the distance of the pin from the cylinder's line, 0.4 m."""
+    whole = 60.0 * 9.80665 * 0.75 / 0.4
     alone = Robot(boom(1), RobotStart(joints=(0.0,)), MS)
     both = Robot(boom(2), RobotStart(joints=(0.0,)), MS)
     assert alone.actuator_forces == pytest.approx([whole], rel=1e-12, abs=0.0)
