@@ -84,15 +84,18 @@ def test_forces_at_rest_are_mujocos(tmp_path: Path) -> None:
         np.linalg.solve(jacobian.T, data.qfrc_bias), rel=1e-6)
 
 
-def test_its_step_is_mj_step_under_the_mean_of_each_fifth() -> None:
-    model, data = model_of()
+@pytest.mark.parametrize('steps', [1, 2])
+def test_its_steps_are_mj_steps_under_the_mean_of_each_fifth(steps: int) -> None:
+    model, _ = model_of(MODEL.replace('timestep="0.0002"', f'timestep="{2e-4 / steps}"'))
+    data = mujoco.MjData(model)
+    data.qpos[:] = POSE
     body = MujocoBody(model, data, mounting())
     forces = np.linspace(1e3, 2e3, 10).reshape(5, 2)
     own = mujoco.MjData(model)
     own.qpos[:] = POSE
     for row in forces:
         own.ctrl[:] = row
-        mujoco.mj_step(model, own)
+        mujoco.mj_step(model, own, steps)
     state = body.stepped(body.state, forces, 1e-3)
     after = np.empty(len(state))
     mujoco.mj_getState(model, own, after, int(mujoco.mjtState.mjSTATE_INTEGRATION))
@@ -156,3 +159,5 @@ def test_a_warning_of_mujoco_ends_the_run(
     body = MujocoBody(model, data, mounting())
     with pytest.raises(SimulationDiverged, match='MuJoCo: mjWARN_BAD'):
         body.stepped(body.state, np.full((5, 2), 1e13), 1e-3)
+    with pytest.raises(SimulationDiverged, match='MuJoCo: mjWARN_BAD'):     # one warning is enough
+        MujocoBody(*model_of(), mounting()).motion(body.state, np.array([1e13, 0.0]))

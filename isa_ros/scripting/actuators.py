@@ -69,7 +69,6 @@ class Actuators:
         """
         configured = {own.name: own for own in self._run.configuration.actuators}
         own = [configured[name] for name in self.names]
-        self._port[:] = np.zeros((), FORMAT)
         self._port['x0'] = ([each.initial_position for each in own] if position is None
                             else numbers_of(self.names, 'position', position))
         self._port['force'] = 0.0 if force is None else numbers_of(

@@ -92,6 +92,8 @@ def test_a_port_has_all_that_is_given() -> None:
     actuators.start(force=[300.0, -500.0])
     actuators.advance([0.041, 0.059], [0.01, 0.02], [3.0, 4.0], inverse_mass=[0.02, 0.03],
                       jerk=[5.0, 6.0], stiffness=[7.0, 8.0], damping=[0.9, 1.1])
+    assert actuators.forces.tolist() == actuators.result['body.port_force'][1].tolist() != [
+        300.0, -500.0]
     port = {name: actuators.result[f'body.port_{name}'][1].tolist() for name in (
         'x0', 'v0', 'a0', 'inverse_mass', 'a_bias', 'jerk', 'stiffness', 'damping')}
     assert port == {
@@ -103,6 +105,8 @@ def test_a_port_has_all_that_is_given() -> None:
     assert result['body.port_a_bias'][2].tolist() == [-1.0, -2.0]
     for name in ('jerk', 'damping'):
         assert result[f'body.port_{name}'][2].tolist() == [0.0, 0.0]
+    actuators.start()   # another run, whose first port has place and force alone
+    assert not any(actuators.result[f'body.port_{name}'][0].any() for name in port if name != 'x0')
 
 
 def test_commands_controllers_and_a_log_that_grows() -> None:
@@ -126,6 +130,8 @@ def test_commands_controllers_and_a_log_that_grows() -> None:
 @pytest.mark.parametrize(('call', 'message'), [
     (lambda own: own.advance([0.0], [0.0, 0.0], [0.0, 0.0]),
      r'position has the shape \(1,\), must have \(2,\): one number for each of back, out'),
+    (lambda own: own.advance([0.0, 0.0], [[0.0], [0.0]], [0.0, 0.0]),
+     r'velocity has the shape \(2, 1\), must have \(2,\)'),
     (lambda own: own.advance([0.0, 0.0], [0.0, np.nan], [0.0, 0.0]),
      'out: velocity = nan, must be finite'),
     (lambda own: own.advance([0.0, 0.0], [0.0, 0.0], [0.0, 0.0], jerk=[np.inf, 0.0]),

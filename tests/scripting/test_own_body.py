@@ -175,14 +175,16 @@ def test_a_factory_that_fails_or_gives_one_body_twice_is_named() -> None:
         rig().simulate(0.001, body=one)
 
 
-def test_a_start_outside_the_stroke_is_refused() -> None:
+@pytest.mark.parametrize('place', [0.3, -0.001])
+def test_a_start_outside_the_stroke_is_refused(place: float) -> None:
     class Far(Slide):
-        """It starts 0.3 m away."""
+        """It starts beyond an end."""
 
         def starts(self, starts: np.ndarray) -> None:
             """Fill it."""
-            starts['position'][self.rows] = 0.3
-    with pytest.raises(ConfigError, match='body: pull starts at 0.3 m, must be within its stroke'):
+            starts['position'][self.rows] = place
+    with pytest.raises(
+            ConfigError, match=f'body: pull starts at {place} m, must be within its stroke'):
         rig().simulate(0.001, body=Far)
 
 

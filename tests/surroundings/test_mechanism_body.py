@@ -184,12 +184,12 @@ def test_at_a_dead_centre_the_port_stays_bounded(sign: float) -> None:
 def test_where_a_force_moves_nothing_the_port_has_no_response() -> None:
     """At the dead centre itself: 1/m = 0, and no direction to probe along."""
     class Blocked(MassOnSpring):
-        """Its first actuator has no lever and stands."""
+        """Its first actuator has no lever, and another motion."""
 
         def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
             """Return it."""
             own = super().motion(state, np.array([0.0, forces[1]]))
-            return own._replace(acceleration=np.array([0.0, own.acceleration[1]]))
+            return own._replace(acceleration=np.array([-5.0 * state[0], own.acceleration[1]]))
     body = MechanismBody(Blocked(), mounting(), has_response=True)
     ports = np.zeros(N, LOAD_PORT)
     body.ports(ports)
