@@ -204,6 +204,12 @@ def _check_number(where: str, value: Any, declared: Any) -> None:
         raise ParameterError(f'{where} = {value!r}, must be a number{after(" in ", unit)}')
     if not math.isfinite(value):
         raise ParameterError(f'{where} = {quantity(str(value), unit)}, must be finite')
+    if 'words' in declared:
+        possible = {k: word for k, word in enumerate(declared['words'])
+                    if word in declared['choices'] and k <= declared['bounds']['le']}
+        if value not in possible:
+            raise ParameterError(f'{where} = {value:g}, must be one of ' + ', '.join(
+                f'{k} ({word})' for k, word in possible.items()))
     if 'is_whole' in declared and value != int(value):
         raise ParameterError(f'{where} = {value:g}, must be a whole number ({declared["doc"]})')
     if 0.0 < abs(value) < SMALLEST:

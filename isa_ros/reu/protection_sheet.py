@@ -5,7 +5,7 @@ Most levels are parts of a rating of the actuator's own sheet, so that they hold
 valve and supply. The defaults are outside of what the shipped scenarios reach.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, make_dataclass
 from typing import Any, Protocol, TypeVar
 
@@ -135,6 +135,14 @@ CONDITION_OF = {
 def reactions_of(sheet: Protection) -> dict[str, str]:
     """Return the reaction of every condition by its key below ``reu.protection``."""
     return {key: reaction_of(sheet, name) for key, name in CONDITION_OF.items()}
+
+
+def changed_reactions(values: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """Yield condition and reaction for each reaction among changed values, by their names."""
+    for name, value in values.items():
+        condition = CONDITION_OF.get(name.partition('reu.protection.')[2])
+        if condition is not None:
+            yield condition, REACTIONS[int(value)]
 
 
 def reaction_of(sheet: Protection, condition: str) -> str:

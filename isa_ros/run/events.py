@@ -131,16 +131,23 @@ def _changes(run: RunConfig, history: History) -> Iterator[Event]:
 def _runs(source: str, key: str, values: Mapping[int, float], own: Changeable | None,
           step_ns: int) -> Iterator[Event]:
     """Yield the changes of one parameter, by sample; they took effect a tick before it."""
-    shown, scale, unit = (key, 1.0, '') if own is None else (own.key, own.scale, own.keyed.unit)
+    shown = key if own is None else own.key
+
+    def text_of(value: float) -> str:
+        if own is None:
+            return digits(value, _DIGITS)
+        if own.words:
+            return str(own.shown(value))
+        return quantity(digits(value / own.scale, _DIGITS), own.keyed.unit)
     ticks = sorted(tick for tick in values if tick > 0)
     first = 0
     for k, tick in enumerate(ticks):
         if k + 1 < len(ticks) and ticks[k + 1] <= tick + _GAP:
             continue
         begins = ticks[first]
-        text = f'{shown} = {quantity(digits(values[begins] / scale, _DIGITS), unit)}'
+        text = f'{shown} = {text_of(values[begins])}'
         if tick > begins:
             text += (f', then at every tick until t = {(tick - 1) * step_ns / NS_PER_SECOND:.6f} '
-                     f's: {quantity(digits(values[tick] / scale, _DIGITS), unit)}')
+                     f's: {text_of(values[tick])}')
         yield Event((begins - 1) * step_ns / NS_PER_SECOND, source, CHANGE, text)
         first = k + 1

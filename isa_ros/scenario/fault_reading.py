@@ -133,6 +133,11 @@ def _changing(
     given = [key for key in (RAMP, INTERMITTENT, *WAVEFORMS) if key in tree]
     if len(given) > 1:
         raise ConfigError(place.has(f'has {" and ".join(given)}, must have one of them'))
+    between = [key for key in given if key != INTERMITTENT]
+    whole = [name for name in fault.values if 'is_whole' in known[name].declared]
+    if between and whole:
+        raise ConfigError(f'{place / between[0]} is not used: {known[whole[0]].key} takes whole '
+                          'numbers only')
     if RAMP in tree:
         ticks = _tick(tree, RAMP, place, step_ns)
         if ticks == 0:

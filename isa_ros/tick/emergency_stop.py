@@ -14,13 +14,13 @@ from typing import NamedTuple
 from isa_ros.actuator.tuning import values_in_force
 from isa_ros.config.runs.emergency_stops import AT_REST, NEVER
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
-from isa_ros.core.conditions import BITS, conditions, REACTIONS
+from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import DISABLED, FAULT
 from isa_ros.core.signals import Records
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.reu.protection_sheet import CONDITION_OF, reaction_of
+from isa_ros.reu.protection_sheet import changed_reactions, reaction_of
 from isa_ros.surroundings.dump import NoneDump
 from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
 
@@ -80,14 +80,11 @@ class EmergencyStops:
     def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
         """Take the parameters that changed, by row: reactions in force open the lines."""
         for row, values in tuned.items():
-            for key, value in values.items():
-                condition = CONDITION_OF.get(key.partition('protection.')[2])
-                if condition is None:
-                    continue
+            for condition, reaction in changed_reactions(values):
                 for group in self._groups:
                     trips, bit = self._trips[group.line], 1 << BITS[condition]
                     if row in trips:
-                        opens = REACTIONS[int(value)] in group.reactions
+                        opens = reaction in group.reactions
                         trips[row] = trips[row] | bit if opens else trips[row] & ~bit
 
     def cause(self, group: StopGroup, samples: Records) -> str:

@@ -58,10 +58,11 @@ def test_every_parameter_of_a_condition_changes_as_if_it_stood_in_the_sheet():
 
 @pytest.mark.parametrize(('values', 'message'), [
     ({'overload.reaction': 'stop'}, "reaction = 'stop', must be one of none, warn, limit, hold"),
-    ({'overload.reaction': 7.0}, 'overload.reaction = 7, must be <= 6 '),
-    ({'overload.reaction': 0.5}, 'overload.reaction = 0.5, must be a whole number'),
+    ({'overload.reaction': 7.0}, r'overload.reaction = 7, must be one of 0 \(none\), 1 \(warn\), '
+     r'2 \(limit\), 3 \(hold\), 4 \(damp\), 5 \(quick_stop\), 6 \(disable\)$'),
+    ({'overload.reaction': 0.5}, 'overload.reaction = 0.5, must be one of 0 '),
     ({'supply_low.reaction': 'limit'}, "supply_low.reaction = 'limit', must be one of none, warn"),
-    ({'supply_low.reaction': 2.0}, "SupplyLow.reaction = 'limit', must be one of none, warn"),
+    ({'supply_low.reaction': 2.0}, r'supply_low.reaction = 2, must be one of 0 \(none\), 1 '),
     ({'end_of_stroke.reaction': 'hold'}, 'must be none or warn or limit: an actuator that stops'),
     ({'encoder_jump.reaction': 'quick_stop'}, 'encoder_jump.reaction = quick_stop, must be'),
     ({'overspeed.warning': 2.0}, 'overspeed.warning = 2, must be <= overspeed.trip = 1.1'),

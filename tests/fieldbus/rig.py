@@ -41,6 +41,8 @@ class Rig:
         self.simulation.tune(self.names[self.row], self.device.changes())
         self.device.fill_command(self.commands[self.row])
         self.simulation.step(self.commands)
+        if values := self.simulation.tuned.get(self.row):
+            self.device.take_changes(values)
         self.device.take_sample(self.sample, self.simulation.ticks)
         self.emergencies += self.device.emergencies()
 

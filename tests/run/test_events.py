@@ -1,5 +1,6 @@
 """Events in samples: cavities, counts and changes, each once."""
 
+import isa_ros
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.changeable import Changeable
@@ -62,6 +63,13 @@ def test_a_value_is_in_the_unit_of_its_key():
                      'reu.current.kp_v_per_ma', 1e3, 'V/mA')
     found, = _runs('ram', 'current.kp', {1: 3000.0}, own, 1_000_000)
     assert found.what == 'reu.current.kp_v_per_ma = 3 V/mA'
+
+
+def test_a_reaction_is_told_by_its_name():
+    """It was the place of its name in the table of reactions."""
+    result = isa_ros.load('rig_linear').simulate(0.01, faults=[
+        {'t_s': 0.004, 'actuator': 'ram', 'set': {'reu.protection.overload.reaction': 'warn'}}])
+    assert 'reu.protection.overload.reaction = warn' in [own.what for own in result.events]
 
 
 def test_a_warning_that_is_there_already_is_not_new():

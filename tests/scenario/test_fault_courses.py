@@ -90,7 +90,11 @@ TWO = {'period_s': 0.01, 'duty': 0.5}
 
 
 @pytest.mark.parametrize(('tree', 'message'), [
-    ({'set': {STUCK: 1}, 'ramp_s': 0.1}, r'plant.spool.stuck = 0.01, must be a whole number'),
+    ({'set': {STUCK: 1}, 'ramp_s': 0.1},
+     r'faults\[0\].ramp_s is not used: plant.spool.stuck takes whole numbers only'),
+    ({'set': {'reu.protection.mask': 2}, 'until_s': 0.9, 'sine': {
+        'amplitude': 1, 'frequency_hz': 2}},    # it began, and ended the run at the second tick
+     r'faults\[0\].sine is not used: reu.protection.mask takes whole numbers only'),
     ({'set': {BIAS: 1}, 'ramp_s': 0.0}, r'faults\[0\].ramp_s = 0 s, must be > 0 s; without it'),
     ({'set': {BIAS: 1}, 'ramp_s': 0.0005}, r'faults\[0\].ramp_s = 0.0005 s, must be a multiple'),
     ({'set': {BIAS: 1}, 'intermittent': TWO}, r'faults\[0\] has intermittent: needs until_s'),

@@ -19,6 +19,7 @@ from isa_ros.fieldbus.device.integer_twins import take_twins, twin_actuals, TWIN
 from isa_ros.fieldbus.device.manufacturer_area import note_refusal, tunable_keys
 from isa_ros.fieldbus.device.objects import ObjectEntry, ObjectTable, Value
 from isa_ros.fieldbus.device.process_data import is_changed_in_preop, ProcessData
+from isa_ros.tick.emergency_stop import LINE
 import numpy as np
 
 _ERROR_REGISTER, _ERROR_CODE, _CONTROL = (0x1001, 0), (0x603F, 0), (0x6040, 0)
@@ -214,7 +215,11 @@ class ActuatorDevice:
         return self._drive.limited(found)
 
     def take_changes(self, values: Mapping[str, float]) -> None:
-        """Show gains and limits that were changed from elsewhere, SI, by name."""
+        """Take what has changed in the REU, SI, by name: show its gains and limits."""
+        if LINE in values:
+            self._axis.has_emergency_stop = values[LINE] != 0.0
+            self._faults.take_emergency_stop(self._axis.has_emergency_stop)
+        self._faults.take_reactions(values)
         shown = self._drive.foreign(values)
         for key, one in self._tunables.items():
             if one.name in shown:

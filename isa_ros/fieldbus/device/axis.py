@@ -71,6 +71,8 @@ class Axis:
         self.position, self.velocity = config.initial_position, 0.0
         self.state = INITIALISING
         """State of the REU's device."""
+        self.has_emergency_stop = False
+        """Whether the line of its emergency stop is open."""
 
     def unit(self, unit: str) -> str:
         """Return the unit of this kind of actuator: of ``linear | rotary``."""

@@ -16,8 +16,8 @@ from isa_ros.fieldbus.device.cia402_motion_objects import DIGITAL_INPUTS
 from isa_ros.fieldbus.device.cia402_objects import (
     CSP, CSV, HOMING, IMPEDANCE_MODE, NO_MODE, PP, PV, REFUSED_MODES)
 from isa_ros.fieldbus.device.cia402_states import (
-    CAUSE_GONE, command_of, ENDS_OFF, Event402, FAULT_RESET, FOLLOWING, REU_DISABLED, State402,
-    STAYS)
+    CAUSE_GONE, command_of, ENDS_OFF, Event402, FAULT_RESET, FOLLOWING, RELEASED, REU_DISABLED,
+    State402, STAYS)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
@@ -26,6 +26,7 @@ from isa_ros.fieldbus.device.force_limits import ForceLimits
 from isa_ros.fieldbus.device.mode_setpoints import ModeSetpoints
 from isa_ros.fieldbus.device.motions import HALT, Motions
 from isa_ros.fieldbus.device.objects import ObjectEntry, Value
+from isa_ros.fieldbus.device.rest import Rest
 from isa_ros.fieldbus.device.setpoints import enable
 from isa_ros.fieldbus.device.states import Transition
 import numpy as np
@@ -60,6 +61,7 @@ class Drive402(Drive):
         self._following_error = FollowingError(axis.step_ns, values)
         self._has_left = self._is_held = False
         self._motions = Motions(axis, values, self._limiter)
+        self._rest = Rest(axis)
         self._moved_in: int | None = None
         self._setpoints = ModeSetpoints(
             axis, values, self._limiter, self._limits, self._motions)
@@ -164,6 +166,7 @@ class Drive402(Drive):
         self._happens(Event402.INITIALISED)
         self._watch_deviation()
         self._motions.watch()
+        self._rest.watch()
         self._is_stopping &= axis.is_on
         if axis.state in (FAULT_REACTION, FAULT) and not self._clears or self._faults.has_own:
             self._happens(Event402.FAULT)
@@ -178,6 +181,9 @@ class Drive402(Drive):
             elif axis.is_disabled and self._was_on:
                 self._happens(Event402.DROPPED)
             self._was_on |= axis.state == ENABLED
+        if axis.has_emergency_stop:     # of which the REU tells that it stops
+            self._happens(Event402.EMERGENCY_STOP)
+            self._has_left |= self.state is State402.QUICK_STOP
 
     def _obey(self, control: int) -> None:
         if (event := command_of(control)) is not None:
@@ -189,6 +195,8 @@ class Drive402(Drive):
             return self._operate(command)
         if state in (State402.QUICK_STOP, State402.FAULT_REACTION):
             if axis.state != ENABLED:
+                if self._rest.is_over and (state is State402.FAULT_REACTION or not self._stays):
+                    return self._off(command)
                 return self._held(command) if state is State402.QUICK_STOP else 0
             if self._is_held and self._stays:
                 return 0
@@ -268,4 +276,6 @@ class Drive402(Drive):
             return not self._stays
         if guard == STAYS:
             return self._stays and (self._axis.is_disabled or self._is_held)
+        if guard == RELEASED:
+            return not self._axis.has_emergency_stop
         return guard not in (REU_DISABLED, CAUSE_GONE) or self._axis.is_disabled

@@ -42,6 +42,7 @@ class Event402(Enum):
     LEFT = 'the bus leaves operational'
     LOCAL_STOP = 'a quick stop from elsewhere'
     DROPPED = 'disabled from elsewhere'
+    EMERGENCY_STOP = 'the emergency stop'
     STOPPED = 'the REU is disabled'
     FAULT = 'a fault'
     REACTION_ENDS = "the REU's outputs are off"
@@ -63,10 +64,11 @@ COMMANDS = (
     ControlPattern(0x86, 0x02, Event402.STOP))
 """Every pattern; a word that fits none changes nothing."""
 
-REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
-    'the REU is disabled', 'option code 0 or 2, or the bus has left operational',
+REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE, RELEASED = (
+    'the REU is disabled',
+    'option code 0 or 2, the bus has left operational, or an emergency stop',
     'option code 6, the bus has stayed, and the REU has stopped',
-    'its cause is gone')
+    'its cause is gone', 'no emergency stop is open')
 
 
 _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
@@ -77,7 +79,8 @@ _NO_FAULT = tuple(
 TRANSITIONS = (
     Transition(1, State402.NOT_READY, Event402.INITIALISED, '', State402.SWITCH_ON_DISABLED,
                _SHOWN),
-    Transition(2, State402.SWITCH_ON_DISABLED, Event402.SHUTDOWN, '', State402.READY, _SHOWN),
+    Transition(2, State402.SWITCH_ON_DISABLED, Event402.SHUTDOWN, RELEASED, State402.READY,
+               _SHOWN),
     Transition(3, State402.READY, Event402.SWITCH_ON, '', State402.SWITCHED_ON, _SHOWN),
     Transition(3, State402.READY, Event402.ENABLE, '', State402.SWITCHED_ON, 'then transition 4'),
     Transition(4, State402.SWITCHED_ON, Event402.ENABLE, REU_DISABLED, State402.OPERATION_ENABLED,
@@ -89,20 +92,26 @@ TRANSITIONS = (
                _SHOWN),
     Transition(7, State402.READY, Event402.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(7, State402.READY, Event402.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(7, State402.READY, Event402.EMERGENCY_STOP, '', State402.SWITCH_ON_DISABLED,
+               _SHOWN),
     Transition(8, State402.OPERATION_ENABLED, Event402.SHUTDOWN, '', State402.READY,
                _OFF_BY_CODE),
     Transition(9, State402.OPERATION_ENABLED, Event402.DISABLE_VOLTAGE, '',
                State402.SWITCH_ON_DISABLED, _OFF),
     Transition(9, State402.OPERATION_ENABLED, Event402.DROPPED, '', State402.SWITCH_ON_DISABLED,
                'it was `~/enable` with false, for example'),
+    Transition(9, State402.OPERATION_ENABLED, Event402.EMERGENCY_STOP, REU_DISABLED,
+               State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(10, State402.SWITCHED_ON, Event402.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
                _SHOWN),
     Transition(10, State402.SWITCHED_ON, Event402.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(10, State402.SWITCHED_ON, Event402.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(10, State402.SWITCHED_ON, Event402.EMERGENCY_STOP, '', State402.SWITCH_ON_DISABLED,
+               _SHOWN),
     Transition(11, State402.OPERATION_ENABLED, Event402.STOP, '', State402.QUICK_STOP,
                'the quick stop of the REU; with option code 0 it is disabled'),
     Transition(11, State402.OPERATION_ENABLED, Event402.LOCAL_STOP, '', State402.QUICK_STOP,
-               'it was `~/quick_stop`, for example'),
+               'it was `~/quick_stop` or the emergency stop'),
     Transition(11, State402.OPERATION_ENABLED, Event402.LEFT, '', State402.QUICK_STOP,
                'the same; it ends off, whatever the option code'),
     Transition(12, State402.QUICK_STOP, Event402.STOPPED, ENDS_OFF, State402.SWITCH_ON_DISABLED,

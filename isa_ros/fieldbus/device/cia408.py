@@ -97,7 +97,7 @@ class Drive408(Drive):
         if not has_tripped and not self._faults.has_own:
             self._happens(Event408.RESET)
         if self.state in (State408.HOLD, State408.ACTIVE):
-            if self._was_on and axis.state != ENABLED:
+            if axis.state != ENABLED and (self._was_on or axis.has_emergency_stop):
                 self._is_blocked = True
                 self._happens(Event408.DROPPED)
             self._was_on = axis.state == ENABLED
@@ -169,7 +169,8 @@ class Drive408(Drive):
 
     def _holds(self, guard: str) -> bool:
         if guard == MAY_ENABLE:
-            return self._axis.is_disabled and not self._is_blocked
+            return (self._axis.is_disabled and not self._is_blocked
+                    and not self._axis.has_emergency_stop)
         if guard == MAY_ACT:
             return not self._is_held
         if guard == HOLDS:

@@ -3,16 +3,17 @@ Errors as a bus reports them: conditions of the device as error codes, EMCY and 
 
 A trip whose reaction stops the actuator is a fault: its code stays in 0x603F until the fault is
 reset. Every trip sends an emergency message, and one with code 0 follows when the last is gone.
+An open emergency stop is an error from outside, and no fault: it has a code as long as it is open.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from isa_ros.core.conditions import BITS, COMMUNICATION, CONDITIONS, ErrorCode, FAULTS, PROFILE
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, ERRORS_KEPT
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import Value
-from isa_ros.reu.protection_sheet import Protection, reaction_of
+from isa_ros.reu.protection_sheet import changed_reactions, Protection, reaction_of
 
 _GENERIC = 1
 
@@ -20,7 +21,8 @@ BUS_LOST = ErrorCode(0x8180, COMMUNICATION, 'communication: the bus is lost')
 FOLLOWING_ERROR = ErrorCode(0x8611, PROFILE, 'following error')
 PDO_LENGTH = ErrorCode(0x8210, COMMUNICATION, 'PDO not processed due to length error')
 NO_ERROR = ErrorCode(0, 0, 'no error')
-OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH)
+EMERGENCY_STOP = ErrorCode(0x9000, 0, 'external error: the emergency stop')
+OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH, EMERGENCY_STOP)
 """Errors that the bus interface finds by itself."""
 
 _WORD = 0xFFFF
@@ -47,9 +49,14 @@ class Faults:
         self._values = values
         self._trips = 0
         self._own: list[ErrorCode] = []
+        self._is_stopped = False
         self._new: list[Emergency] = []
-        self.code = 0
-        """Of the fault, as in 0x603F; 0: none."""
+        self._code = 0
+
+    @property
+    def code(self) -> int:
+        """Return 0x603F: the code of the fault, else of an open emergency stop, or 0."""
+        return self._code or EMERGENCY_STOP.code * self._is_stopped
 
     @property
     def has_own(self) -> bool:
@@ -59,7 +66,7 @@ class Faults:
     @property
     def register(self) -> int:
         """Return the error register 0x1001."""
-        found = 0
+        found = _GENERIC * self._is_stopped
         for bit, condition in enumerate(CONDITIONS):
             if self._trips >> bit & 1:
                 found |= condition.error.register | _GENERIC
@@ -74,17 +81,33 @@ class Faults:
         new, self._trips = trips & ~self._trips, trips
         for bit, condition in enumerate(CONDITIONS):
             if new >> bit & 1:
-                if not self.code and self._stopping >> bit & 1:
-                    self.code = condition.error.code
+                if not self._code and self._stopping >> bit & 1:
+                    self._code = condition.error.code
                 self._report(condition.error)
-        if not (new or trips or self._own):
-            self._report(NO_ERROR)
+        if not new:
+            self._report_end()
+
+    def take_reactions(self, values: Mapping[str, float]) -> None:
+        """Take the reactions among changed values of the REU, by their names."""
+        for condition, reaction in changed_reactions(values):
+            bit = 1 << BITS[condition]
+            self._stopping = (self._stopping | bit if reaction in FAULTS
+                              else self._stopping & ~bit)
+
+    def take_emergency_stop(self, is_open: bool) -> None:
+        """Report that the line of the emergency stop is open, and that it is closed again."""
+        if is_open and not self._is_stopped:
+            self._is_stopped = True
+            self._report(EMERGENCY_STOP)
+        elif self._is_stopped and not is_open:
+            self._is_stopped = False
+            self._report_end()
 
     def add(self, error: ErrorCode) -> None:
         """Add an error of the bus interface, which lasts until `clear`."""
         if error not in self._own:
             self._own.append(error)
-            self.code = self.code or error.code
+            self._code = self._code or error.code
             self._report(error)
 
     def note(self, error: ErrorCode) -> None:
@@ -95,16 +118,15 @@ class Faults:
         """Forget the errors of the bus interface; those of the device stay."""
         if self._own:
             self._own.clear()
-            if not self._trips:
-                self._report(NO_ERROR)
+            self._report_end()
 
     def end(self) -> None:
         """Forget the code: the fault has been reset."""
-        self.code = 0
+        self._code = 0
 
     def restart(self) -> None:
         """Forget everything, unsent messages too; a trip that lasts is reported anew."""
-        self._trips = self.code = 0
+        self._trips = self._code = 0
         self._own.clear()
         self._new.clear()
         delete_errors(self._values)
@@ -113,6 +135,10 @@ class Faults:
         """Return the messages since the last call."""
         found, self._new = self._new, []
         return found
+
+    def _report_end(self) -> None:
+        if not (self._trips or self._own or self._is_stopped):
+            self._report(NO_ERROR)
 
     def _report(self, error: ErrorCode, register: int = 0) -> None:
         code, data = error.code, self._trips.to_bytes(_DATA_BYTES, 'little')
