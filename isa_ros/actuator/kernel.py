@@ -65,12 +65,13 @@ def loops_and_plant(
     state, reu = continuous[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         if reu.is_frozen == 0.0:
-            sense(step, reu.current_steps, state.plant, state.load.position,
-                  state.load.velocity, actuator.plant, actuator.noise_key, channels,
-                  reu_state.measured)
-            reu_state.supply_pressure = port.supply_pressure
+            reu_state.supply_pressure = sense(
+                step, reu.current_steps, state.plant, state.load.position, state.load.velocity,
+                port.supply_pressure, actuator.plant, actuator.noise_key, channels,
+                reu_state.measured)
             if reu.protection.is_on:
-                protect(step, port.supply_pressure, thermal.sensed, reu.protection, reu_state)
+                protect(step, reu_state.supply_pressure, thermal.sensed, reu.protection,
+                        reu_state)
             else:
                 reu_state.frozen_for = 0.0
             cascade_step(step, reu, reu_state)
@@ -160,7 +161,8 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
     sample.largest_cavity = max(sample.largest_cavity, sample.cavity_a, sample.cavity_b)
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     if actuator.reu.is_frozen == 0.0:   # else its last reading stays
-        sample.supply_pressure = port.supply_pressure
+        sample.supply_pressure = (port.supply_pressure if actuator.plant.sensors.errors.are_ideal
+                                  else reu_state.supply_pressure)
     add_energies(reply, port, state.totals.energies,
                  stored_elastically(state, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)

@@ -40,8 +40,10 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     """
     own, state = row_record(memory.constants), row_record(memory.continuous)
     reu = row_record(memory.reu)
-    sense(0, own.reu.current_steps, state.plant, state.load.position, state.load.velocity,
-          own.plant, own.noise_key, row_record(memory.channels), reu.measured)
+    supply_pressure = sense(
+        0, own.reu.current_steps, state.plant, state.load.position, state.load.velocity,
+        row_record(memory.ports).supply_pressure, own.plant, own.noise_key,
+        row_record(memory.channels), reu.measured)
     at, reu.speed.position = reu.measured, reu.measured.position
     for block, value in (
             (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
@@ -61,7 +63,7 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     device.switched, state.plant.block.lift = LONG_AGO, float(device.is_energised)
     sample = row_record(memory.samples)
     write_sample(state.plant, reu, sample)
-    sample.supply_pressure = row_record(memory.ports).supply_pressure
+    sample.supply_pressure = supply_pressure
     thermal = row_record(memory.thermals)
     sample.temperature = thermal.sensed = read_temperature(
         0, thermal.oil, own.noise_key, own.plant.sensors.temperature, thermal.sensed)

@@ -63,6 +63,7 @@ MEASURED = np.dtype([
 ])
 """The last readings of the channels of one actuator's sensors."""
 CHANNELS = tuple(MEASURED.names or ())
+SUPPLY_CHANNEL = 'supply'
 """In the order of all arrays of channels, and of their noise."""
 
 SAMPLE_FIELDS = (

@@ -11,6 +11,8 @@ A channel with a converter that is lost, its wire broken, reads `DEAD` of its ra
 where a live zero shows it. n is white and normal, of `isa_ros.core.noise`; t_0 is
 the first conversion of the run, or that at which the channels were no longer ideal. A stuck
 channel keeps its reading; if it is stuck at the first conversion, that one is kept.
+
+The last channel is that of the supply's pressure, which has a transmitter of its own and no step.
 """
 
 from collections.abc import Mapping
@@ -21,13 +23,16 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
-from isa_ros.core.signals import CHANNELS
+from isa_ros.core.signals import CHANNELS, SUPPLY_CHANNEL
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ParameterError
 import numpy as np
 
-N_CHANNELS = len(CHANNELS)
+NAMES = (*CHANNELS, SUPPLY_CHANNEL)
+N_CHANNELS = len(NAMES)
+SUPPLY = NAMES.index(SUPPLY_CHANNEL)
+TEMPERATURE_NOISE, SUPPLY_NOISE = len(CHANNELS), len(CHANNELS) + 1    # channels of the noise
 LINE = 128  # conversions that a delay line holds
 DEAD = 0.25     # of a range: 0 mA where 4 to 20 mA are the range
 _MS_PER_STEP = PLANT_STEP_NS * 1e-6
@@ -153,7 +158,7 @@ CHANNELS_STATE = np.dtype([
 
 def channel_errors(channels: Mapping[str, Any]) -> np.record:
     """Return the `CHANNEL_ERRORS` of the channels by name."""
-    ordered = [channels[name] for name in CHANNELS]
+    ordered = [channels[name] for name in NAMES]
     steps = [round(channel.delay_ms / _MS_PER_STEP) for channel in ordered]
     errors = {
         'sigma': [channel.sigma for channel in ordered],
@@ -184,7 +189,7 @@ def refuse_delays(channels: Mapping[str, Any], period_steps: int) -> None:
 
     """
     period_ms, longest = period_steps * _MS_PER_STEP, longest_delay_ms(period_steps)
-    for name in CHANNELS:
+    for name in NAMES:
         delay = channels[name].delay_ms
         conversions = delay / period_ms
         if delay > longest or abs(conversions - round(conversions)) > MILLI:
@@ -225,5 +230,5 @@ def disturb(step, period, key, errors, state):
         if errors.drift[k] != 0.0:
             value += errors.drift[k] * ((step - state.beginning) * PLANT_STEP)
         if errors.sigma[k] != 0.0:
-            value += errors.sigma[k] * normal(key, step, k)
+            value += errors.sigma[k] * normal(key, step, k if k < SUPPLY else SUPPLY_NOISE)
         state.shown[k] = value

@@ -11,7 +11,6 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, section
 from isa_ros.core.record import record
-from isa_ros.core.signals import CHANNELS
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
@@ -39,6 +38,7 @@ class Sensors(Parameters):
     pressure_b: channels.PressureChannel = section(channels.PressureChannel)
     spool: channels.SpoolChannel = section(channels.SpoolChannel)
     current: channels.CurrentChannel = section(channels.CurrentChannel)
+    supply: channels.PressureChannel = section(channels.PressureChannel)
     temperature: TemperatureSensor = section(TemperatureSensor)
 
     def __post_init__(self) -> None:
@@ -49,8 +49,8 @@ class Sensors(Parameters):
 
     @property
     def channels(self) -> dict[str, channels.Channel]:
-        """Return the channels by name, in the order of `CHANNELS`."""
-        return {name: getattr(self, name) for name in CHANNELS}
+        """Return the channels by name, in the order of `channels.NAMES`."""
+        return {name: getattr(self, name) for name in channels.NAMES}
 
 
 SENSORS = np.dtype([
@@ -92,13 +92,13 @@ def convert(value, lowest, highest, step):
 
 
 @kernel
-def sense(step, period, y, x_load, v_load, plant, key, state, measured):
+def sense(step, period, y, x_load, v_load, supply_pressure, plant, key, state, measured):
     """
-    Convert every channel once, at plant step ``step``  (S1-S3).
+    Convert every channel once, at plant step ``step``  (S1-S3); return the read supply pressure.
 
     ``y`` is a `PLANT_STATE`; ``x_load`` and ``v_load`` are the load's side of the force sensor,
-    ``period`` that of the converters in plant steps, ``key`` of the noise, ``state`` a
-    `channels.CHANNELS_STATE`, ``measured`` a `MEASURED`.
+    ``supply_pressure`` the exact one in Pa, ``period`` that of the converters in plant steps,
+    ``key`` of the noise, ``state`` a `channels.CHANNELS_STATE`, ``measured`` a `MEASURED`.
     """
     own, at = plant.sensors, y.mechanics
     measured.position = at.position
@@ -107,10 +107,14 @@ def sense(step, period, y, x_load, v_load, plant, key, state, measured):
     measured.spool = y.spool.position
     measured.current = coil_current(y.coil, plant.coil)
     if not own.errors.are_ideal:
-        disturb(step, period, own.errors, key, state, measured)
+        supply_pressure = disturb(
+            step, period, supply_pressure, own.errors, key, state, measured)
     read(own, measured)
     if not own.errors.are_ideal:
         lose(own, measured)
+        if own.errors.is_lost[channels.SUPPLY] == 1:
+            supply_pressure = -channels.DEAD * own.pressure_range
+    return supply_pressure
 
 
 @kernel
@@ -130,17 +134,23 @@ def lose(own, measured):
 
 
 @kernel
-def disturb(step, period, errors, key, state, measured):
-    """Replace exact values by what their channels show the converters  (S3)."""
+def disturb(step, period, supply_pressure, errors, key, state, measured):
+    """
+    Replace exact values by what their channels show the converters  (S3).
+
+    Returns what that of the supply shows, Pa.
+    """
     exact = channels.enter(step, period, state)
     exact[0], exact[1] = measured.position, measured.force
     exact[2], exact[3] = measured.pressure_a, measured.pressure_b
     exact[4], exact[5] = measured.spool, measured.current
+    exact[channels.SUPPLY] = supply_pressure
     channels.disturb(step, period, key, errors, state)
     shown = state.shown
     measured.position, measured.force = shown[0], shown[1]
     measured.pressure_a, measured.pressure_b = shown[2], shown[3]
     measured.spool, measured.current = shown[4], shown[5]
+    return shown[channels.SUPPLY]
 
 
 @kernel

@@ -16,11 +16,10 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError
-from isa_ros.plant.channels import N_CHANNELS
+from isa_ros.plant.channels import TEMPERATURE_NOISE
 import numpy as np
 
 _IDEAL = 'assumed, ideal'
-_CHANNEL = N_CHANNELS  # of the noise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +72,7 @@ def read_temperature(step, temperature, key, own, before):
         return before
     value = temperature + own.bias + own.drift * (step * PLANT_STEP)
     if own.sigma != 0.0:
-        value += own.sigma * normal(key, step, _CHANNEL)
+        value += own.sigma * normal(key, step, TEMPERATURE_NOISE)
     if own.resolution > 0.0:
         value = math.floor(value / own.resolution + 0.5) * own.resolution
     return value

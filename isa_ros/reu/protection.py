@@ -175,7 +175,7 @@ def measure(supply_pressure, temperature, protection, state):
     watch_feeding(supply_pressure, state.status.is_open, protection.period, own_supervision,
                   own.supervision)
     values[BIT.sensor_range] = beyond_range(
-        measured, own.supervision.fed_for, own_supervision)
+        measured, supply_pressure, own.supervision.fed_for, own_supervision)
     (values[BIT.position_error], values[BIT.force_error], values[BIT.oscillation],
      values[BIT.runaway]) = supervise(
         supply_pressure, own_supervision, state, own.supervision)

@@ -51,14 +51,15 @@ def watch_feeding(supply_pressure, is_open, period, own, supervised):
 
 
 @kernel
-def beyond_range(measured, fed_for, own):
+def beyond_range(measured, supply_pressure, fed_for, own):
     """
     Return how far a converter's reading is beyond its range, as a part of the range.
 
+    Of the supply's pressure, whose transmitter has a range of its own, only a broken wire is told.
     Both pressures at zero are such a reading, too, once they have been fed for `FILLING`: 1 at
     zero, 0 from `ZERO` on.
     """
-    most = max(-measured.pressure_a, measured.pressure_a - own.pressure_range,
+    most = max(-supply_pressure, -measured.pressure_a, measured.pressure_a - own.pressure_range,
                -measured.pressure_b, measured.pressure_b - own.pressure_range)
     part = max(most / own.pressure_range, abs(measured.force) / own.force_range - 1.0,
                abs(measured.current) / own.current_range - 1.0)

@@ -217,10 +217,10 @@ def _sensor(copied: PatchedCopy) -> None:
         sensors, last, '    tachometer: channels.TachometerChannel = section('
         f'channels.TachometerChannel)\n{last}')
     for old, new in (
-            ('    if not own.errors.are_ideal:\n        disturb(',
+            ('    if not own.errors.are_ideal:\n        supply_pressure = disturb(',
              'measured.tachometer = at.velocity'),
             ('    channels.disturb(', 'exact[6] = measured.tachometer'),
-            ('\n\n@kernel\ndef read(', 'measured.tachometer = shown[6]')):
+            ('    return shown[', 'measured.tachometer = shown[6]')):
         copied.replace(sensors, old, f'    {new}\n{old}')
     copied.replace(
         'isa_ros/actuator/kernel.py', '    sample.current = measured.current\n',

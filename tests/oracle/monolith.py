@@ -137,7 +137,7 @@ def sample_reus(step, y, commands, is_commanded, system):
             setpoint.stiffness, setpoint.damping = c[3], c[4]
             feed(state.protection)
         if is_due(step, reu.current_steps, reu.offset_steps):
-            sense(step, reu.current_steps, system.bodies[0][j].plant, x[j], v[j],
+            sense(step, reu.current_steps, system.bodies[0][j].plant, x[j], v[j], 0.0,
                   actuator.plant, actuator.noise_key, system.channels[j], state.measured)
             cascade_step(step, reu, state)
         if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):

@@ -2,11 +2,10 @@
 
 from dataclasses import replace
 
-from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
 from isa_ros.plant.channels import (
-    channel_errors, CHANNELS_STATE, disturb, enter, LINE, N_CHANNELS, refuse_delays)
+    channel_errors, CHANNELS_STATE, disturb, enter, LINE, N_CHANNELS, NAMES, refuse_delays)
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
@@ -47,11 +46,11 @@ def test_channels_are_ideal_by_default():
     assert not errors(current={'stuck': 1.0}).are_ideal
 
 
-@pytest.mark.parametrize('name', CHANNELS)
+@pytest.mark.parametrize('name', NAMES)
 def test_a_bias_is_added_to_its_channel_alone(name):
     """S3."""
     apart = shown(errors(**{name: {'bias': 1e-3}}), 300) - EXACT
-    assert (apart == np.where(np.array(CHANNELS) == name, (EXACT + 1e-3) - EXACT, 0.0)).all()
+    assert (apart == np.where(np.array(NAMES) == name, (EXACT + 1e-3) - EXACT, 0.0)).all()
 
 
 def test_a_drift_grows_from_the_first_conversion_on():
@@ -94,7 +93,7 @@ def test_after_a_gap_line_and_drift_begin_again():
 
 def test_noise_has_its_own_numbers_in_every_channel():
     """S3; their statistics are those of `isa_ros.core.noise`."""
-    noise = (shown(errors(**{name: {'sigma': 1e-5} for name in CHANNELS}), 300) - EXACT) / 1e-5
+    noise = (shown(errors(**{name: {'sigma': 1e-5} for name in NAMES}), 300) - EXACT) / 1e-5
     assert noise.std(axis=0) == pytest.approx(np.ones(N_CHANNELS), abs=0.25)  # 6 std errors
     assert np.abs(np.corrcoef(noise.T) - np.eye(N_CHANNELS)).max() < 0.35
 

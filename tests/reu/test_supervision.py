@@ -24,14 +24,22 @@ def measured(**values):
     ('spool', 3.6e-4, 0.2)])
 def test_a_reading_beyond_its_range_is_told_as_a_part_of_it(name, reading, part):
     """A live zero: 0 mA of a 4 to 20 mA sensor reads a quarter of the range below zero."""
-    found = own.beyond_range(measured(**{'pressure_b': 5e6, name: reading}), 0.0, CONSTANTS)
+    found = own.beyond_range(
+        measured(**{'pressure_b': 5e6, name: reading}), SUPPLY, 0.0, CONSTANTS)
     assert found == pytest.approx(part, abs=1e-12)
+
+
+def test_a_broken_wire_of_the_supply_pressure_is_told():
+    """Its transmitter may have any range: above there is none."""
+    for pressure, part in ((-0.25 * 25e6, 0.25), (0.0, 0.0), (60e6, 0.0)):
+        found = own.beyond_range(measured(), pressure, 0.0, CONSTANTS)
+        assert found == pytest.approx(part, abs=1e-12)
 
 
 def test_a_valve_without_a_spool_sensor_has_no_range_of_it():
     constants = CONSTANTS.copy().view(np.recarray)
     constants.spool_range = 0.0
-    assert own.beyond_range(measured(spool=1.0, pressure_a=5e6), 1.0, constants) == 0.0
+    assert own.beyond_range(measured(spool=1.0, pressure_a=5e6), SUPPLY, 1.0, constants) == 0.0
 
 
 @pytest.mark.parametrize(('p_a', 'p_b', 'fed_for', 'part'), [
@@ -39,7 +47,8 @@ def test_a_valve_without_a_spool_sensor_has_no_range_of_it():
     (0.25e6, 0.0, 0.11, 0.0), (0.0, 5e6, 0.11, 0.0), (0.0, 0.0, 0.09, 0.0), (0.0, 0.0, 0.0, 0.0)])
 def test_both_pressures_at_zero_under_a_supply_are_beyond_a_range(p_a, p_b, fed_for, part):
     """Sensors of 25 MPa: within 1 % of it both, of chambers that had 0.1 s to fill."""
-    found = own.beyond_range(measured(pressure_a=p_a, pressure_b=p_b), fed_for, CONSTANTS)
+    found = own.beyond_range(
+        measured(pressure_a=p_a, pressure_b=p_b), SUPPLY, fed_for, CONSTANTS)
     assert found == pytest.approx(part, abs=1e-12)
 
 

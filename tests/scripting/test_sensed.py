@@ -7,12 +7,14 @@ not move it: what they add is the difference to a run with ideal sensors of 24 b
 
 from itertools import combinations
 import math
+from pathlib import Path
 
 import isa_ros
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ConfigError
 from isa_ros.testing import assert_replays
+from isa_ros.tick.trips import TripWarning
 import numpy as np
 import pytest
 from scipy import stats
@@ -240,3 +242,50 @@ def test_levels_of_data_sheets_are_derived_from_the_ranges(model):
         assert channel.sigma == pytest.approx(1.1 * span / 4096, rel=0.04, abs=0.0)
         assert channel.bias == pytest.approx(bias, rel=0.04, abs=0.0)
     assert (sensors.position.delay_ms, sensors.position.sigma) == (0.1, 0.0)
+
+
+SUPPLY = [('bias', {'bias': -2e6}), ('noise', {'sigma': 1e5}), ('drift', {'drift_per_s': 1e6}),
+          ('stuck', {'stuck': 1.0}), ('delay', {'delay_ms': 3.0}), ('scale', {'scale': 0.5})]
+
+
+@pytest.mark.parametrize(('kind', 'values'), SUPPLY)
+def test_the_sensor_of_the_supply_errs_alone(kind: str, values: dict[str, float]) -> None:
+    """What the REU reads changes, and in a run without a stop nothing else."""
+    pump = {'supply.pressure_mpa': 18.0, 'supply.return_pressure_mpa': 0.0}
+    changes = [{'t_s': 0.1, 'supply': 'supply', 'set': {'pressure_mpa': 16.0}}]
+    ideal = rig(0.2).replace(pump).simulate(faults=changes)
+    assert set(ideal['ram.supply_pressure']) == {18e6, 16e6}
+    own = rig(0.2).replace(pump | {
+        f'{SENSORS}.supply.{key}': value for key, value in values.items()}).simulate(
+            faults=changes)
+    read, exact = own['ram.supply_pressure'][1:], ideal['ram.supply_pressure'][1:]
+    if kind == 'bias':
+        assert read == pytest.approx(exact - 2e6)
+    elif kind == 'scale':
+        assert read == pytest.approx(0.5 * exact)
+    elif kind == 'noise':
+        assert 0.7e5 < (read - exact).std() < 1.3e5
+    elif kind == 'drift':   # 1 MPa/s, from the first conversion on
+        assert read - exact == pytest.approx(1e6 * own.time[1:], abs=200.0)
+    elif kind == 'stuck':
+        assert set(read) == {18e6}
+    else:
+        assert (read[3:] == exact[:-3]).all()
+    for name in (*CHANNELS, 'supply_flow', 'chamber_pressure_a'):
+        assert (own[f'ram.{name}'] == ideal[f'ram.{name}']).all()
+
+
+@pytest.mark.parametrize(('values', 'condition', 'after_s'), [
+    ({'plant.sensors.supply.lost': 1}, 'sensor_range', 0.002),
+    ({'plant.sensors.supply.bias': -17e6}, 'supply_low', 0.01),
+    ({'fault': 'supply_sensor_lost'}, 'sensor_range', 0.002)])
+def test_the_conditions_judge_what_the_sensor_of_the_supply_reads(
+        values: dict[str, float], condition: str, after_s: float, tmp_path: Path) -> None:
+    """And a replay does as well."""
+    given = values if 'fault' in values else {'set': values}
+    with pytest.warns(TripWarning):
+        result = isa_ros.load('rig_linear').simulate(
+            0.1, faults=[{'t_s': 0.05, 'actuator': 'ram'} | given])
+    assert result.trips[0].condition == condition
+    assert result.trips[0].t_s == pytest.approx(0.05 + after_s, abs=2e-4)
+    assert_replays(result.save(tmp_path / 'bag'))

@@ -231,15 +231,14 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
     simulation = Simulation(replace(scenario, run=rig.configuration))
     n, clear = round(DURATION_S / STEP_S), round(CLEAR_S / STEP_S)
     rows = np.zeros(n + 1, SAMPLE)
-    pressure = np.zeros(n + 1)
     for tick in range(n + 1):
         if tick:
             simulation.step()
         rows[tick] = simulation.group.samples[0]
-        pressure[tick] = simulation.surroundings.supplies['pressure'][0]
         if tick in (clear, clear + 1) and faults:
             _clear(simulation, tick == clear)
-    return {_SUPPLY: pressure} | {name: rows[name] for name in (*CHANNELS, *_DEVICE)}
+    return {_SUPPLY: rows['supply_pressure']} | {
+        name: rows[name] for name in (*CHANNELS, *_DEVICE)}
 
 
 def _clear(simulation: Simulation, is_first: bool) -> None:

@@ -30,7 +30,7 @@ REPORTED: Mapping[str, tuple[str, int]] = {
     'load_cell_offset': ('load cell implausible', DELAY),
     'load_cell_late': ('oscillation', 199), 'load_cell_reversed': ('oscillation', 166),
     'pressure_a_lost': ('load cell implausible', DELAY), 'pressures_lost': ('sensor range', 3),
-    'spool_sensor_stuck': ('spool deviation', 102)}
+    'supply_sensor_lost': ('sensor range', 3), 'spool_sensor_stuck': ('spool deviation', 102)}
 """First condition that the device warns of or trips, and ms from the begin of the fault."""
 UNREPORTED = [name for name, own in fault_catalogue().items() if own.unreported or own.unseen]
 
