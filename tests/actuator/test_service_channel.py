@@ -1,13 +1,20 @@
 """Gains and levels behind a link: in force when a frame has brought them, and not before."""
 
+from types import SimpleNamespace
+
+from isa_ros.actuator.frames import SLOTS
 from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.actuator.service_channel import ServiceChannel, travels
+from isa_ros.actuator.tunable import changing, GAINS
 from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.signals import COMMAND, LOAD_PORT
+from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
 from tests.actuator.test_link import actuator, linked, TICK
-from tests.sheets import own_load
+from tests.sheets import actuator_sheet, own_load
 
 KP, TRIP, STUCK = 'force.kp', 'reu.protection.overload.trip', 'plant.spool.stuck'
 DEAD = 'link.loss'
@@ -183,3 +190,43 @@ def test_many_ticks_in_one_call_are_those_of_single_calls():
     many.advance_many(ports, commands)
     assert in_force(many.actuators[0])[0] == 1.2e-7
     assert many.snapshot() == one.snapshot()
+
+
+def test_of_values_that_arrive_between_two_ticks_the_newest_is_in_force():
+    """Two frames on their way, late, and both in the same tick."""
+    values = ChangingValues('ram', ['gain'], [0.0])
+    down = SimpleNamespace(sent=np.zeros(SLOTS), first=0, count=0)
+    state = SimpleNamespace(brought=-1, down=down)
+    channel = ServiceChannel(SimpleNamespace(watchdog_ns=0), state, values, np.array([True]))
+    values.accept({'gain': 1.0})
+    assert not channel.latch(0)
+    down.count = 1      # a frame leaves with it at step 0
+    values.accept({'gain': 2.0})
+    assert not channel.latch(50)
+    state.brought = 51
+    assert channel.latch(100) and values.in_force == {'gain': 2.0}
+
+
+def test_a_value_that_is_too_old_does_not_take_a_newer_one_with_it():
+    """The first is dropped after 100 steps, the second has 30 more."""
+    values = ChangingValues('ram', ['gain'], [0.0])
+    down = SimpleNamespace(sent=np.zeros(SLOTS), first=0, count=1)
+    state = SimpleNamespace(brought=-1, down=down)
+    channel = ServiceChannel(
+        SimpleNamespace(watchdog_ns=100 * PLANT_STEP_NS), state, values, np.array([True]))
+    for step, value in ((0, 1.0), (50, 2.0)):
+        values.accept({'gain': value})
+        channel.latch(step)
+    channel.latch(120)
+    assert values.accepted == {'gain': 2.0}
+    channel.latch(150)
+    assert values.accepted == {}
+
+
+def test_what_travels_are_gains_and_levels_of_the_reu():
+    """No fault, plant, load or link; gains of a setpoint are in its own frame."""
+    known = changing(actuator_sheet('isa_v5'), own_load('isa_v5', 'mass'))
+    names = {name for name, goes in zip(known, travels(known)) if goes}
+    assert {KP, TRIP, 'reu.protection.mask', 'reu.protection.overload.reaction'} <= names
+    assert not names & {*GAINS, STUCK, DEAD, 'load.force', 'reu.frozen'}
+    assert set(GAINS) <= set(known)

@@ -82,6 +82,11 @@ def test_every_transition_of_cia_402(monkeypatch):
         other.rig.simulation.command('ram', **command)
         other.rig.simulation.step()
         other.device.take_sample(other.rig.sample, 0)
+    for words in ((SHUTDOWN, SHUTDOWN), (*TO_402['SWITCHED_ON'], SWITCH_ON),
+                  TO_402['OPERATION_ENABLED']):
+        stopped = master_at(words[:-1])
+        stopped.rig.simulation.emergency_stop()
+        stopped.cycle(words[-1])
     fresh, = devices_of(isa_ros.load('rig_linear').configuration)
     fresh.end_operation(is_lost=True)
     assert seen == rows(cia402_states)

@@ -81,6 +81,13 @@ def test_a_warning_that_is_there_already_is_not_new():
                                  (2.0, 'ram', 'warning', 'overspeed')]
 
 
+def test_a_warning_is_that_of_the_sample_which_is_the_first_to_have_it():
+    overload = 1 << BITS['overload']
+    history = History(range(4), samples(
+        4, warnings=[0, 0, overload, overload], state_since=[0, 0, 2, 2]))
+    assert happened(history) == [(2.0, 'ram', 'warning', 'overload')]
+
+
 def test_a_trip_without_a_time_is_that_of_the_message_that_is_the_first_to_name_it():
     before = samples(1, trips=4, last_trip=4, trip_time=0.5)[0, 0]
     kept = _last_trip(before, {'trips': 4.0, 'state_since': 0.75})

@@ -92,6 +92,8 @@ TWO = {'period_s': 0.01, 'duty': 0.5}
 @pytest.mark.parametrize(('tree', 'message'), [
     ({'set': {STUCK: 1}, 'ramp_s': 0.1},
      r'faults\[0\].ramp_s is not used: plant.spool.stuck takes whole numbers only'),
+    ({'set': {'plant.sensors.force.delay_ms': 2.0}, 'ramp_s': 0.1},     # at its first step
+     r'at 0.5 s, .*plant.sensors.force.delay_ms = 0.02 ms, must be <= 12.7 ms and a multiple of'),
     ({'set': {'reu.protection.mask': 2}, 'until_s': 0.9, 'sine': {
         'amplitude': 1, 'frequency_hz': 2}},    # it began, and ended the run at the second tick
      r'faults\[0\].sine is not used: reu.protection.mask takes whole numbers only'),

@@ -98,6 +98,23 @@ def test_what_changed_is_told_once():
     assert surroundings.tuned_value('supply.pressure_mpa') == 10.0
 
 
+def test_a_fault_of_a_supply_is_taken_off_without_a_value_of_its_own():
+    """0 MPa are below the bound of the pressure; they are not its value then."""
+    surroundings = surroundings_with(hip_and_knee())
+    surroundings.tune({'+supply.pressure_mpa': 10.0})
+    assert surroundings.tick() == 10e6
+    surroundings.tune({'-supply.pressure_mpa': 0.0})
+    assert surroundings.tick() == 20.7e6
+
+
+@pytest.mark.parametrize('value', [True, 'high', None])
+def test_a_value_of_a_supply_is_a_number(value):
+    surroundings = surroundings_with(hip_and_knee())
+    with pytest.raises(ConfigError, match=f'supply.pressure_mpa = {value!r}, must be a number'):
+        surroundings.tune({'supply.pressure_mpa': value})
+    assert surroundings.tuned_value('supply.pressure_mpa') == 20.7
+
+
 @pytest.mark.parametrize(('values', 'message'), [
     ({'supply.presure_mpa': 1.0}, 'supply.presure_mpa is unknown; did you mean supply.pressure'),
     ({'supply.pressure_mpa': 0.0}, 'supply.pressure_mpa = 0 MPa, must be > 0 MPa'),

@@ -536,3 +536,59 @@ def test_no_supply_has_the_name_of_the_lines():
         'feeds': ['left', 'right', 'other']}}
     with pytest.raises(ConfigError, match='the name is taken by the lines of emergency stops'):
         isa_ros.load(named)
+
+
+def test_each_stop_waits_anew_for_what_is_silent():
+    """Two stops of 1.2 s behind a lost link are no stop of 2.4 s."""
+    simulation = run().simulation()
+    stops, samples = simulation.loop.stops, simulation.group.samples.copy()
+    assert stops is not None
+    samples['is_stale'] = 1.0
+
+    def opened() -> bool:
+        return simulation.surroundings.tuned_value('supply.dump.opened') == 1.0
+
+    n = round(0.6 * LONGEST_STOP / 1e-3)
+    for _ in range(2):
+        stops.request(True, samples)
+        for _ in range(n):
+            stops.act(samples, {})
+        assert not opened()
+        stops.request(False, samples)
+        stops.act(samples, {})
+    stops.request(True, samples)
+    for _ in range(round(LONGEST_STOP / 1e-3)):
+        stops.act(samples, {})
+    assert opened()
+
+
+def test_the_supply_of_others_is_not_dumped():
+    plain = tree()
+    supplies = {name: plain['supply'] | {'feeds': feeds} for name, feeds in (  # type: ignore
+        ('own', ['left', 'right']), ('theirs', ['other']))}
+    del plain['supply']
+    simulation = isa_ros.load(plain | {'supplies': supplies}).simulation()
+    advance(simulation, 20)
+    simulation.emergency_stop(group='pair')
+    advance(simulation, ENDED_MS + 50)
+    opening = {name: float(own.dump_opening)
+               for name, own in simulation.supply_samples.items()}
+    assert opening['own'] > 0.5 and opening['theirs'] == 0.0
+    assert states(simulation) == [DISABLED, DISABLED, ENABLED]
+
+
+def test_a_supply_that_was_not_dumped_is_watched_from_the_next_enable_on():
+    """And before it: nothing has taken the pressure of a group without a dump."""
+    simulation = moving({'dumps': 'never'})
+    simulation.emergency_stop()
+    advance(simulation, ENDED_MS)
+    simulation.emergency_stop(False)
+    advance(simulation, 2)
+    simulation.command('left', is_enabled=True)
+    advance(simulation, 60)
+    simulation.tune('supply', {'dump.opened': 1.0})
+    advance(simulation, 100)
+    tripped = [isa_ros.conditions(simulation.samples[name].trips) for name in simulation.names]
+    assert tripped[0][0] == 'supply_low'
+    # the line is open again, and takes the pressure of the others
+    assert simulation.surroundings.tuned_value('emergency_stop.pair.opened') == 1.0

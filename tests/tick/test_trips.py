@@ -125,3 +125,18 @@ def test_a_live_run_keeps_its_lines_over_a_reset_and_tells_commands_without_effe
         'until t = 0.100000 s', *counts, *counts]
     assert list(counts_of(['ram'], sample(unused_setpoints=1.0))) == [
         'ram: 1 setpoint not followed: not enabled']
+
+
+def test_a_trip_without_a_quantity_is_told_without_one():
+    """That of a bag which names it by bits alone."""
+    trip, = trips_of(log(sample(), sample(
+        ('overload',), 'overload', 0.1, trip_value=np.nan, trip_level=1.0)), NAMES)
+    assert trip.value is trip.level is None
+    assert str(trip) == 'wheel: overload tripped at t = 0.100000 s: enabled'
+
+
+def test_what_lasts_since_before_the_first_rows_is_not_told_with_the_next_trip():
+    found = trips_of(log(
+        sample(('overload',), 'overload', 0.1),
+        sample(('overload', 'overcurrent'), 'overcurrent', 0.2)), NAMES)
+    assert [trip.condition for trip in found] == ['overcurrent']
