@@ -12,6 +12,7 @@ from isa_ros.bench.door import door_rows
 from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.page import BenchDrawing
 from isa_ros.bench.plant import cylinder_rows, plant_rows
+from isa_ros.bench.robots import robot_rows
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import Spec
@@ -48,6 +49,7 @@ GROUPS = (
     BenchGroup('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
     BenchGroup('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
     BenchGroup('door', 'A tick with an external body', alone(door_rows)),
+    BenchGroup('robots', 'Quadrupeds that trot, without ROS', alone(robot_rows)),
     BenchGroup('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
     BenchGroup('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
     BenchGroup('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),

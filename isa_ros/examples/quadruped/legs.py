@@ -144,8 +144,8 @@ class Legs:
         self.com, self.holding = np.zeros(3), np.zeros(n - 1)
         self.feet, self.velocities = np.zeros((f, 3)), np.zeros((f, 3))
         self.jacobians = np.zeros((f, 3, JOINTS))
-        self._frames, self._origins = np.zeros((n, 3, 3)), np.zeros((n, 3))
-        self._out = (self._frames, self._origins, self.com, self.holding, self.feet,
+        self._frames, self.origins = np.zeros((n, 3, 3)), np.zeros((n, 3))
+        self._out = (self._frames, self.origins, self.com, self.holding, self.feet,
                      self.velocities, self.jacobians)
 
     def update(self, root: np.ndarray, turning: np.ndarray, angles: np.ndarray,
@@ -153,8 +153,8 @@ class Legs:
         """
         Take the root's rotation, (3, 3), and angular velocity, (3,), and all joints, (n - 1,).
 
-        Then ``feet`` and ``velocities`` (less that of the root's origin), ``jacobians``, ``com``
-        and ``holding`` are those of now; they are overwritten by the next call.
+        Then ``feet`` and ``velocities`` (less that of the root's origin), ``jacobians``, ``origins``
+        of the links, (n, 3), ``com`` and ``holding`` are those of now, until the next call.
         """
         update_legs(root, turning, angles, speeds, self._tree, self._legs, self._out)
 
@@ -166,7 +166,7 @@ class Legs:
     def inertia(self, sheet: RobotSheet) -> np.ndarray:
         """Return the inertia about the centre of mass after an `update`, kg m2, (3, 3)."""
         total = np.zeros((3, 3))
-        for link, frame, origin in zip(sheet.links, self._frames, self._origins):
+        for link, frame, origin in zip(sheet.links, self._frames, self.origins):
             xx, yy, zz, xy, xz, yz = link.inertia
             own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
             arm = origin + frame @ np.array(link.com) - self.com

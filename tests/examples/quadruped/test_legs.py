@@ -87,7 +87,7 @@ def test_the_inertia_is_that_of_all_links_about_their_centre(sheet):
     assert inertia == pytest.approx(inertia.T, abs=1e-12)
     assert np.linalg.eigvalsh(inertia).min() > 0.0
     points = sum(link.mass * np.sum(np.square(
-        legs._origins[i] + legs._frames[i] @ np.array(link.com) - legs.com))
+        legs.origins[i] + legs._frames[i] @ np.array(link.com) - legs.com))
         for i, link in enumerate(sheet.links))
     own = sum(sum(link.inertia[:3]) for link in sheet.links)
     assert np.trace(inertia) == pytest.approx(2.0 * points + own, rel=1e-12, abs=0.0)

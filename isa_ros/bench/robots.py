@@ -1,0 +1,115 @@
+"""Twelve actuators with a body: the quadruped's trot, its parts, and up to four robots."""
+
+from collections.abc import Callable
+from pathlib import Path
+import tempfile
+import time
+from typing import Any
+
+from isa_ros.bag.writer import BagWriter
+from isa_ros.bench.row import Aim, Row, seconds
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.provenance import provenance_of
+from isa_ros.run.thinning import Thinning
+from isa_ros.scripting.run import load, Run
+from isa_ros.simulation import Simulation
+import numpy as np
+
+TICKS = 300
+ROUNDS = 3
+BEGUN = 800     # ticks, after which the robots trot
+ROBOTS = (1, 2, 4)
+TROT = 'isa_ros.examples.quadruped.trot:Trot'
+PROGRAM: list[dict[str, float]] = [
+    {'t_s': 0.0, 'height': 0.565}, {'t_s': 0.1, 'steps': 1.0}, {'t_s': 0.2},
+    {'t_s': 0.6, 'speed': 0.5}]
+
+
+def robot_rows() -> list[Row]:
+    """Measure a trot in one process, with controller and recording, without ROS."""
+    rows = []
+    for n in ROBOTS:
+        ticks = [_recorded_ticks(trotting(n)) for _ in range(ROUNDS)]
+        row = Row.of(f'{12 * n} actuators, {n} quadruped{"s" if n > 1 else ""}, recording',
+                     ticks, 'ticks/s')
+        row = row.against('real time', row.number * 1e-3)
+        rows.append(row.aiming(Aim(2500.0)) if n == 1 else row)
+        if n == 1:
+            rows += [part.under(row) for part in _parts(trotting(1))]
+    return rows
+
+
+def trotting(n: int) -> Run:
+    """Return a run of so many quadrupeds, each with a trot of its own."""
+    if n == 1:
+        return load('quadruped', {'name': 'trot', 'duration_s': 60.0, 'controllers': {
+            'trot': {'class': TROT, 'program': PROGRAM}}})
+    names = [f'r{k + 1}' for k in range(n)]
+    tree: dict[str, Any] = {'name': 'quadrupeds', 'robots': {
+        name: {'file': 'quadruped'} for name in names}}
+    bodies = [own.name for own in load(tree).configuration.bodies]
+    return load(tree, {'name': 'trot', 'duration_s': 60.0, 'controllers': {
+        f'trot_{k + 1}': {'class': TROT, 'program': PROGRAM, 'body': body}
+        for k, body in enumerate(bodies)}})
+
+
+def _begun(run: Run) -> Simulation:
+    simulation = run.simulation()
+    for _ in range(BEGUN):
+        simulation.step()
+    return simulation
+
+
+def _recorded_ticks(run: Run) -> float:
+    """Return the ticks a second of a run that is recorded, host time."""
+    simulation = run.simulation()
+    packer = packer_of(run.configuration, simulation.loop.rows.published)
+    thinning = Thinning(run.configuration.record, packer.topics)
+    with tempfile.TemporaryDirectory() as folder, BagWriter(
+            Path(folder) / 'bag', thinning.topics, provenance_of(run.scenario)) as bag:
+        simulation.loop.sinks = (RunOutput(
+            packer, run.configuration.step_ns, thinning.recorder(bag), Outlets()),)
+        simulation.loop.begin()
+        for _ in range(BEGUN):
+            simulation.step()
+        start = time.perf_counter()
+        for _ in range(TICKS):
+            simulation.step()
+        spent = time.perf_counter() - start
+        simulation.loop.end()
+    return TICKS / spent
+
+
+def _parts(run: Run) -> list[Row]:
+    """Return the parts of a tick of one quadruped, in processor time."""
+    simulation = _begun(run)
+    whole = _cpu(simulation.step)
+    surroundings, loop = simulation.surroundings, simulation.loop
+    ports = np.zeros(len(simulation.names), LOAD_PORT)
+    snapshot = simulation.snapshot()
+    surroundings.ports(ports)
+    parts = {'the kernel of its actuators': _cpu(lambda: simulation.group.advance(ports))}
+    simulation.restore(snapshot)
+    parts['its body: ports'] = _cpu(lambda: surroundings.ports(ports))
+    parts['its body: a tick'] = _cpu(lambda: surroundings.advance(loop.rows.replies))
+    simulation.restore(snapshot)
+    parts['its controller'] = _cpu(lambda: loop.transport.send(loop.ticks, loop.rows))
+    simulation.restore(snapshot)
+    packer = packer_of(run.configuration, loop.rows.published)
+
+    def pack() -> None:
+        packer.pack(loop.t_ns, loop.t_ns, {})
+        packer.all_messages()
+    parts['its messages'] = _cpu(pack)
+    return [Row('a tick in memory', whole * 1e6, 'us'), *(
+        Row(f'of it {name}' if name != 'its messages' else 'beside it, its messages',
+            value * 1e6, 'us', 'that tick', value / whole) for name, value in parts.items())]
+
+
+def _cpu(work: Callable[[], object]) -> float:
+    """Return the processor time of one of `TICKS` calls, s."""
+    def many() -> None:
+        for _ in range(TICKS):
+            work()
+    return seconds(many, TICKS, of_cpu=True)
