@@ -27,7 +27,7 @@ PROGRAM: list[dict[str, float]] = [
 
 
 def robot_rows() -> list[Row]:
-    """Measure a trot in one process, with controller and recording, without ROS."""
+    """Measure trots in one process, with controllers and recording, in time of the processor."""
     rows = []
     for n in ROBOTS:
         ticks = [_recorded_ticks(trotting(n)) for _ in range(ROUNDS)]
@@ -62,7 +62,7 @@ def _begun(run: Run) -> Simulation:
 
 
 def _recorded_ticks(run: Run) -> float:
-    """Return the ticks a second of a run that is recorded, host time."""
+    """Return the ticks a second of a run that is recorded, in time of the processor."""
     simulation = run.simulation()
     packer = packer_of(run.configuration, simulation.loop.rows.published)
     thinning = Thinning(run.configuration.record, packer.topics)
@@ -73,10 +73,10 @@ def _recorded_ticks(run: Run) -> float:
         simulation.loop.begin()
         for _ in range(BEGUN):
             simulation.step()
-        start = time.perf_counter()
+        start = time.process_time()
         for _ in range(TICKS):
             simulation.step()
-        spent = time.perf_counter() - start
+        spent = time.process_time() - start
         simulation.loop.end()
     return TICKS / spent
 
