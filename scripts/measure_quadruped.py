@@ -1,7 +1,8 @@
 """
 The quadruped at work, in numbers and pictures: the tables and the figure of docs/quadruped.md.
 
-It stands, squats, is pushed and trots at several speeds. The energy is balanced over trunk and ground, and over the actuators' oil.
+It stands, squats, is pushed and trots at several speeds. The energy is balanced over trunk and
+ground, and over what the actuators exchange with them.
 
     python scripts/measure_quadruped.py [FIGURE.png]
 """

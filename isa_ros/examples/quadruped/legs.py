@@ -153,8 +153,9 @@ class Legs:
         """
         Take the root's rotation, (3, 3), and angular velocity, (3,), and all joints, (n - 1,).
 
-        Then ``feet`` and ``velocities`` (less that of the root's origin), ``jacobians``, ``origins``
-        of the links, (n, 3), ``com`` and ``holding`` are those of now, until the next call.
+        Then ``feet`` and ``velocities`` (less that of the root's origin), ``jacobians``,
+        ``origins`` of the links, (n, 3), ``com`` and ``holding`` are those of now, until the next
+        call.
         """
         update_legs(root, turning, angles, speeds, self._tree, self._legs, self._out)
 
