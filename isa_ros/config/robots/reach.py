@@ -95,9 +95,9 @@ def refuse_lever(
         Its lever changes its sign in the range of the joint, or is too short for a port.
 
     """
-    reach = reach_of(sheet, drive, own, joints, place)
     if not isinstance(own.linkage, Cylinder):
         return
+    reach = reach_of(sheet, drive, own, joints, place)
     if reach is None:
         _, levers = motion_of(sheet, drive, joints)
         if max(map(abs, levers)) < SHORTEST_LEVER:

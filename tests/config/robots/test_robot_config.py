@@ -108,6 +108,20 @@ def test_a_mirrored_linkage_is_that_of_the_opposite_angle(runs):
             assert found[0][1][0] == -found[1][1][0] != 0.0
 
 
+def test_a_linkage_of_the_file_has_its_range_mirrored(tmp_path):
+    """Legs of one file: -80 to -30 deg of the one are 30 to 80 deg of the mirrored other."""
+    own = robot(load_run(ROOT / 'config' / 'hyq_quadruped.yaml', {
+        'body.linkages': {'knee': {
+            'linkage': 'slider_crank', 'sense': 1.0, 'offset_deg': 166.0, 'a_mm': 321.8,
+            'b_mm': 45.0, 'retracted_length_mm': 281.0, 'low_deg': -80.0, 'high_deg': -30.0}},
+        'body.drives.*f_kfe': {'like': 'knee'},
+        'body.drives.*h_kfe': {'like': 'knee', 'mirrored': True, 'high_deg': 75.0}}))
+    found = {one.name: one.linkage for one in own.drives}
+    assert (found['lf_kfe'].low_deg, found['lf_kfe'].high_deg) == (-80.0, -30.0)
+    assert (found['rh_kfe'].low_deg, found['rh_kfe'].high_deg) == (30.0, 75.0)
+    assert (found['lf_kfe'].sense, found['rh_kfe'].sense) == (1.0, -1.0)
+
+
 def test_a_cylinder_pushes_as_the_crank_of_its_pins(runs):
     """The knee of the two-joint leg: pins a and b from the joint, law of cosines  (L4)."""
     own = robot(runs['two_joint_leg'])
