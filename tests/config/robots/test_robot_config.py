@@ -138,6 +138,19 @@ def test_a_cylinder_pushes_as_the_crank_of_its_pins(runs):
         assert levers == [pytest.approx((high - low) / (2.0 * by), rel=1e-8)]
 
 
+def test_a_cylinder_turned_round_pushes_the_same(runs):
+    """Its base on the calf, its rod on the thigh: length and lever are those of before."""
+    other = robot(load_run(ROOT / 'config' / 'two_joint_leg.yaml', {
+        'body.drives.knee': {
+            'linkage': 'cylinder', 'base': 'calf', 'base_mm': [4.7, 0.0, -44.8], 'rod': 'thigh',
+            'rod_mm': [45.0, 0.0, -31.4], 'retracted_length_mm': 281.0}}))
+    at = [0.1, 0.3, -1.0]
+    (x, levers), (y, others) = (
+        motion_of(own.sheet, own.sheet.drives[1], at)
+        for own in (robot(runs['two_joint_leg']), other))
+    assert x == pytest.approx(y, abs=1e-15) and levers == pytest.approx(others, abs=1e-15)
+
+
 def test_a_cylinder_over_several_joints_has_a_lever_on_each(runs):
     """From the carriage to the calf: hip and knee; the levers are derivatives."""
     own = robot(load_run(ROOT / 'config' / 'two_joint_leg.yaml', {
