@@ -20,7 +20,8 @@ from isa_ros.config.runs.recording import RECORD, Storage
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import RUN
 from isa_ros.config.runs.supplies import SUPPLY_KEYS
-from isa_ros.config.text.keys import InText, KeyTable, parameter_rows, REQUIRED
+from isa_ros.config.text.key_tables import KeyTable
+from isa_ros.config.text.keys import InText, parameter_rows, REQUIRED
 from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu

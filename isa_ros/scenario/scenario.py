@@ -13,11 +13,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from isa_ros.config.models.catalogue import actuator_model
-from isa_ros.config.models.own_load import own_load, refuse_beyond_stops
-from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.controller_config import CONTROLLERS, controllers_at
-from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
 from isa_ros.config.text.names import name_of
@@ -30,6 +27,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import read_faults, refuse_changes
 from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
+from isa_ros.scenario.rig_changes import refuse_stranger, with_loads, with_starts
 from isa_ros.scenario.robots import with_robots
 from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
@@ -212,7 +210,7 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
                'tracks', 'faults', 'changes'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
-    run = _with_loads(_with_starts(run, tree, place), tree, place)
+    run = with_loads(with_starts(run, tree, place), tree, place)
     if CONTROLLERS in tree:
         run = run.calling(controllers_at(
             tree[CONTROLLERS], place / CONTROLLERS, run.called))
@@ -222,7 +220,7 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     limited: list[str] = []
     for name_there, points in sections.items():
         below = place / 'tracks' / name_there
-        _refuse_stranger(name_there, run, below)
+        refuse_stranger(name_there, run, below)
         track = read_track(run, name_there, points, below, n_ticks)
         track, lines = within_range(
             track, run.actuator(name_there), run.step_ns, accepts_beyond, below)
@@ -274,49 +272,3 @@ def _duration(value: Any, step_ns: int, where: str) -> int:
     if n_ticks < 1:
         raise ConfigError(f'{where} = {value:g} s, must be >= step_ms = {step_ns / 1e6:g} ms')
     return n_ticks
-
-
-def _refuse_stranger(name: str, run: RunConfig, place: Place) -> None:
-    try:
-        run.actuator(name)
-    except ConfigError as error:
-        raise ConfigError(f'{place} is unknown: {error}') from error
-
-
-def _with_starts(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
-    """Return the run with the starts of bodies: of ``leg``, the only one, or by name."""
-    starts: list[tuple[BodyConfig, Place, Any]] = []
-    if 'leg' in tree:
-        if run.leg is None:
-            raise ConfigError(f'{place / "leg"} is not used: {run.source} has no leg')
-        starts.append((run.leg, place / 'leg', tree['leg']))
-    for name, section in section_at(tree.get('bodies', {}), place / 'bodies').items():
-        below, body = place / 'bodies' / name, run.body(name)
-        if body is None:
-            names = [own.name for own in run.bodies]
-            raise ConfigError(f'{below} is not a body; {alternatives(name, names)}')
-        starts.append((body, below, section))
-    for body, below, section in starts:
-        body = body.started(section_at(section, below), below, run.step_ns)
-        run = run.with_body(body)
-        for joint, actuator in body.joints:
-            body.refuse_reach(joint, run.actuator(actuator).sheet, str(below))
-    return run
-
-
-def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
-    loads = section_at(tree.get('loads', {}), place / 'loads')
-    replaced: dict[str, ActuatorConfig] = {}
-    for name, section in loads.items():
-        below = place / 'loads' / name
-        _refuse_stranger(name, run, below)
-        actuator = run.actuator(name)
-        body = run.body_of(name)
-        if body is not None:
-            raise ConfigError(f'{below} is not used: the load of {name} is {body.called}')
-        model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
-        load = own_load(section_at(section, below), below, model, actuator.sheet)
-        refuse_beyond_stops(
-            load, actuator.initial_position, actuator.sheet.is_rotary, str(below))
-        replaced[name] = replace(actuator, load=load)
-    return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

@@ -45,7 +45,8 @@ RAIL = textwrap.dedent('''\
     from typing import Any, ClassVar
 
     from isa_ros.config.runs.body_config import BodyConfig, Made
-    from isa_ros.config.text.keys import Key, KeyTable, NAME, ParameterSet
+    from isa_ros.config.text.key_tables import KeyTable
+    from isa_ros.config.text.keys import Key, NAME, ParameterSet
     from isa_ros.config.text.sections import Place, Section
     from isa_ros.core.fields import Field, record_type, units_of
     from isa_ros.core.parameter import parameter, Parameters
@@ -174,7 +175,7 @@ def test_a_kind_of_bodies_is_a_class_and_a_row(copied: PatchedCopy) -> None:
     """Run file, simulation, bag, replay, lists, comparison and diagnostics use its class."""
     copied.add('isa_ros/config/runs/rail_config.py', RAIL)
     kinds = 'isa_ros/config/runs/body_kinds.py'
-    copied.replace(kinds, '    ExternalConfig,\n)}', '    ExternalConfig,\n    RailConfig,\n)}')
+    copied.replace(kinds, '    RobotConfig,\n)}', '    RobotConfig,\n    RailConfig,\n)}')
     copied.replace(kinds, 'import LegConfig\n', 'import LegConfig\n'
                    'from isa_ros.config.runs.rail_config import RailConfig\n')
     assert len(copied.touched) == 2

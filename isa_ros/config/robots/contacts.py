@@ -8,7 +8,8 @@ from isa_ros.config.models.catalogue import material_section
 from isa_ros.config.robots.drives import frame_named, in_link
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import Tree
-from isa_ros.config.text.keys import FLAG, Key, KeyTable, Named, ParameterSet, TEXT, Value
+from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, section_at
 from isa_ros.config.text.yaml_text import Tree as YamlTree

@@ -8,8 +8,9 @@ from typing import Any
 from isa_ros.config.models.catalogue import leg_names, leg_section
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import Tree
+from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import (
-    FLAG, InText, Key, KeyTable, Named, ParameterSet, PLACED_NAME, TEXT, Value)
+    FLAG, InText, Key, ParameterSet, PLACED_NAME, TEXT, Value)
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.parameter_sets import build_one_of, members
 from isa_ros.config.text.sections import (

@@ -5,8 +5,8 @@ import math
 from typing import Any
 
 from isa_ros.config.robots.tree import Tree
-from isa_ros.config.text.keys import (
-    choice_of, Key, KeyTable, Named, ParameterSet, TEXT, Value)
+from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.keys import choice_of, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.sections import Place, section_at
 from isa_ros.core.parameter import check, numbers, parameter, Parameters
 from isa_ros.surroundings.bodies.robot.sheet import (

@@ -14,8 +14,9 @@ from isa_ros.config.models.links import LINK, link_of
 from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.models.scaling import scaled_sheet
 from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import (
-    ANY_NAME, choice_of, FLAG, InText, Key, KeyTable, Layer, NAMES, number, of_type, TEXT)
+    ANY_NAME, choice_of, FLAG, InText, Key, Layer, NAMES, number, of_type, TEXT)
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, Section
 from isa_ros.core.parameter import check

@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple
 
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.text.keys import KeyTable
+from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.names import placed
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree

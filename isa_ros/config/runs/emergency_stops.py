@@ -14,7 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.config.text.keys import choice_of, Key, KeyTable, Named, NAMES
+from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.keys import choice_of, Key, NAMES
 from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import FAULTS
 from isa_ros.core.suggest import alternatives

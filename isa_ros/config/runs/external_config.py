@@ -10,7 +10,8 @@ from weakref import WeakSet
 
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
-from isa_ros.config.text.keys import Key, KeyTable, NAMES, TEXT
+from isa_ros.config.text.key_tables import KeyTable
+from isa_ros.config.text.keys import Key, NAMES, TEXT
 from isa_ros.config.text.names import parted
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.fields import Field

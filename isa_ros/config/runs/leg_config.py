@@ -11,8 +11,9 @@ from isa_ros.config.models.catalogue import leg_section, material_section
 from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import (
-    ANY_NAME, InText, Key, KeyTable, Layer, Named, of_type, ParameterSet, PLACED_NAME)
+    ANY_NAME, InText, Key, Layer, of_type, ParameterSet, PLACED_NAME)
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import Tree

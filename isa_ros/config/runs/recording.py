@@ -16,7 +16,8 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from isa_ros.bag.storage import PLAIN, Storage
-from isa_ros.config.text.keys import Key, KeyTable, ParameterSet, Value
+from isa_ros.config.text.key_tables import KeyTable
+from isa_ros.config.text.keys import Key, ParameterSet, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree

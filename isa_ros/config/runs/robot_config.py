@@ -24,8 +24,8 @@ from isa_ros.config.robots.tree_text import TREE, tree_from
 from isa_ros.config.robots.urdf import load_urdf
 from isa_ros.config.runs.body_config import BodyConfig, Made
 from isa_ros.config.runs.tick_grid import ticks_in
-from isa_ros.config.text.keys import (
-    choice_of, InText, Key, KeyTable, Layer, Named, ParameterSet, TEXT, Value)
+from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.keys import choice_of, InText, Key, Layer, ParameterSet, TEXT, Value
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field

@@ -21,9 +21,9 @@ from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
+from isa_ros.config.text.key_tables import KeyTable, Named, OneOf
 from isa_ros.config.text.keys import (
-    InText, Key, KeyTable, Layer, NAME, Named, nanoseconds, number, OneOf, ParameterSet,
-    TEXT, Value)
+    InText, Key, Layer, NAME, nanoseconds, number, ParameterSet, TEXT, Value)
 from isa_ros.config.text.names import COORDINATOR, refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree

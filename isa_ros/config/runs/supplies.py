@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.config.text.keys import Key, KeyTable, NAMES, ParameterSet
+from isa_ros.config.text.key_tables import KeyTable
+from isa_ros.config.text.keys import Key, NAMES, ParameterSet
 from isa_ros.config.text.sections import Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA

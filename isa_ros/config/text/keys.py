@@ -1,9 +1,10 @@
 """
-Tables of the keys of a run file: one row a key, from which it is read, written and compared.
+Keys of a run file and the kinds of their values: one row a key, read, written and compared by it.
 
 A row has the key's name, kind, meaning and default, and says whether a resolved text has the key.
 A kind converts the value of a key to a tree of a file and back. `leaves` walks all values of a
 configuration with their rows, for lists of values and units; docs/run_file.md shows the rows.
+Sections of several keys are kinds too: `isa_ros.config.text.key_tables`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -14,10 +15,9 @@ from typing import Any, get_type_hints, NamedTuple
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.parameter_sets import as_tree, build_one_of, members
 from isa_ros.config.text.sections import (
-    KIND_KEYS, names_at, Place, refuse_unknown, Section, section_at, written)
+    KIND_KEYS, names_at, Place, Section, section_at, written)
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check, Parameters
-from isa_ros.core.suggest import listed
 from isa_ros.errors import ConfigError
 
 REQUIRED = object()
@@ -138,7 +138,7 @@ class ParameterSet(ValueKind):
         kinds = members(self.hint)
         for name in KIND_KEYS:
             if name in tree:
-                found = _of_kind(tree[name], kinds, place)
+                found = of_kind(tree[name], kinds, place)
                 return found if isinstance(found, KeyDifference) else {
                     name: Key(name, ANY_NAME, ''), **parameter_rows(found)}
         return KeyDifference(f'{place / "kind"} is missing in the bag', True)
@@ -152,7 +152,7 @@ class Layer(ParameterSet):
         return written(section_at(tree, place), place)
 
 
-def _of_kind(kind: Any, kinds: Mapping[str, Any], place: Place) -> Any:
+def of_kind(kind: Any, kinds: Mapping[str, Any], place: Place) -> Any:
     """Return the one of some kinds that a file names, perhaps with a section or a list."""
     if isinstance(kind, str) and kind in kinds:
         return kinds[kind]
@@ -265,135 +265,3 @@ def nanoseconds(name: str, meaning: str, instead_of: Key, **bounds: float) -> Ke
     return Key(
         name, Value('whole number', checked, 'ns'), f'{meaning} instead of `{instead_of.name}`',
         None, in_text=InText.ONLY, instead_of=(instead_of.name,))
-
-
-@dataclass(frozen=True)
-class KeyTable(ValueKind):
-    """The keys of a section, in the order in which they are written."""
-
-    keys: tuple[Key, ...]
-    rest: Key | None = None
-    """Row of a parameter set whose keys stand beside the others."""
-    words = 'section'
-
-    @property
-    def names(self) -> list[str]:
-        """Return the names of the rows."""
-        return [key.name for key in self.keys]
-
-    def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values by row; as `ValueKind.read`."""
-        section = section_at(tree, place)
-        if self.rest is None:
-            refuse_unknown(
-                self._rest_of(section),
-                [key.name for key in self.keys if key.in_text is not InText.ONLY], place)
-        lacking = [key for key in self.keys
-                   if key.default is REQUIRED and key.name not in section]
-        if lacking:
-            meaning = f', {lacking[0].meaning}' if len(lacking) == 1 else ''
-            raise ConfigError(place.has(
-                f'lacks {listed([key.name for key in lacking])}{meaning}'))
-        for key in self.keys:
-            for other in key.instead_of if key.name in section else ():
-                if other in section:
-                    raise ConfigError(place.has(
-                        f'has {other} and {key.name}, must have only one of them'))
-        values = {key.name: key.read(section, place) for key in self.keys}
-        if self.rest is not None:
-            rest = self._rest_of(section)
-            rows = self.rest.kind.rows(rest, place)
-            if isinstance(rows, Mapping):
-                refuse_unknown(rest, [*self.names, *rows], place)
-            values[self.rest.name] = self.rest.kind.read(self._rest_of(section), place)
-        return values
-
-    def _rest_of(self, section: Tree) -> Tree:
-        return {name: value for name, value in section.items() if name not in self.names}
-
-    def tree(self, value: Any) -> Tree:
-        """Return the section of a configuration."""
-        tree: Tree = {} if self.rest is None else self.rest.kind.tree(self.rest.value(value))
-        for key in self.keys:
-            own = None if key.in_text is InText.NEVER else key.value(value)
-            if own is not None:
-                tree[key.name] = key.kind.tree(own)
-        return tree
-
-    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
-        """Return the rows, and those of the set whose keys stand beside them."""
-        rest = {} if self.rest is None else self.rest.kind.rows(tree, place)
-        return rest if isinstance(rest, KeyDifference) else {
-            **rest, **{key.name: key for key in self.keys}}
-
-    def leaves(self, value: Any, key: str, row: Key | None = None) -> Iterator[Leaf]:
-        """Yield the values of a section."""
-        if self.rest is not None:
-            yield from self.rest.kind.leaves(self.rest.value(value), key, self.rest)
-        for below in self.keys:
-            own = None if below.in_text is InText.NEVER else below.value(value)
-            if own is not None:
-                yield from below.kind.leaves(
-                    own, f'{key}.{below.name}' if key else below.name, below)
-
-
-@dataclass(frozen=True)
-class Named(ValueKind):
-    """Sections by name, each of a configuration that has its name as a field."""
-
-    section: ValueKind
-    are_placed: bool = False
-    """Whether the names may begin with a namespace and a slash."""
-    words = 'sections by name'
-
-    def tree(self, value: Sequence[Any]) -> Tree:
-        """Return the sections by name."""
-        return {item.name: self.section.tree(item) for item in value}
-
-    def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values by name; as `ValueKind.read`."""
-        values = {}
-        for name, below in section_at(tree, place).items():
-            refuse_bad_name(name, f'{place / name}: the name', is_placed=self.are_placed)
-            values[name] = self.section.read(below, place / name)
-        return values
-
-    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
-        """Return a row for each section."""
-        return {name: Key(name, self.section, '') for name in tree}
-
-    def leaves(self, value: Sequence[Any], key: str, row: Key) -> Iterator[Leaf]:
-        """Yield the values of all sections."""
-        for item in value:
-            yield from self.section.leaves(item, f'{key}.{item.name}', row)
-
-
-@dataclass(frozen=True)
-class OneOf(ValueKind):
-    """One of several sections, selected by its key ``kind``; a configuration has its kind."""
-
-    tables: Mapping[str, KeyTable]
-    words = 'section'
-
-    def tree(self, value: Any) -> Tree:
-        """Return the section with its kind."""
-        return {'kind': value.kind} | self.tables[value.kind].tree(value)
-
-    def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values with their kind; as `ValueKind.read`."""
-        rest = dict(section_at(tree, place))
-        kind = rest.pop('kind', None)
-        if not isinstance(kind, str) or kind not in self.tables:
-            raise ConfigError(
-                f'{place / "kind"} = {kind!r}, must be one of {", ".join(self.tables)}')
-        return {'kind': kind} | self.tables[kind].read(rest, place)
-
-    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
-        """Return the rows of the section's kind, and one for the kind."""
-        found = _of_kind(tree.get('kind'), self.tables, place)
-        return found if isinstance(found, KeyDifference) else {
-            'kind': Key('kind', ANY_NAME, ''), **found.rows(tree, place)}
-
-    def leaves(self, value: Any, key: str, row: Key) -> Iterator[Leaf]:
-        """Yield the values of the section."""
-        yield from self.tables[value.kind].leaves(value, key)
