@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import isa_ros
 from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, SUPPLY
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RunConfig
@@ -259,3 +260,17 @@ def test_without_a_bus_its_faults_are_refused():
     scenario = idle(RUN, 1.0).with_faults([{'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}}])
     with pytest.raises(ConfigError, match='fault of bus: knee is used under isa bus only; link:'):
         Simulation(scenario)
+
+
+@pytest.mark.parametrize('change, message', [
+    ({'body': 'robot', 'set': {'push_y': 10.0}},
+     "changes[0].set: 'robot' is not a body that may be pushed; valid: body"),
+    ({'body': 'body', 'set': {'push_q': 10.0}}, 'push_q of body is unknown or does not change'),
+    ({'body': 'body', 'set': {'push_y': 2e5}}, 'push_y = 200000 N, must be <= 100000 N'),
+    ({'body': 'body', 'fault': 'pump_trip'}, 'changes[0].fault')])
+def test_pushes_of_a_body_are_checked_as_they_are_read(change, message):
+    """With the names and bounds of what pushes a robot."""
+    with pytest.raises(ConfigError) as refused:
+        isa_ros.load('quadruped', {'name': 'push', 'duration_s': 0.1, 'changes': [
+            {'t_s': 0.01, **change}]})
+    assert message in str(refused.value)
