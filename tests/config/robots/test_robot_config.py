@@ -56,6 +56,16 @@ def test_a_urdf_is_beside_its_run_file(tmp_path):
         robot(load_run(ROOT / 'config' / 'crane.yaml')).sheet.mass - 10.0)
 
 
+def test_a_contact_may_have_a_ground_of_its_own():
+    """A material, values, or that of the robot."""
+    values = {'stiffness': 2.0e6, 'damping': 0.1, 'friction': 0.5, 'tangential_stiffness': 1e5,
+              'tangential_damping': 20.0}
+    own = robot(load_run(ROOT / 'config' / 'crane.yaml', {'body.ground': 'wood', 'body.contacts': {
+        'a': {'link': 'load'}, 'b': {'link': 'load', 'ground': 'rubber'},
+        'c': {'link': 'load', 'ground': values}}}))
+    assert [one.ground.stiffness for one in own.sheet.contacts] == [1e7, 1e6, 2e6]
+
+
 def test_a_robot_stands_on_its_lowest_contact(runs):
     """All feet of the quadrupeds are on the ground; height_mm lifts the lowest."""
     for name, height in (('quadruped', 0.0), ('hyq_quadruped', 0.0), ('quadruped', 50.0)):

@@ -1,6 +1,7 @@
 """Robots of run files in motion: where they begin, what is held, and when it is let go."""
 
 import isa_ros
+from isa_ros.config.robots.geometry import motion_of
 import numpy as np
 import pytest
 
@@ -27,6 +28,17 @@ def test_a_passive_joint_is_held_until_the_release():
         'body.start.joints_deg.swing_pitch': 0.0, 'body.start.release_s': 0.003}).simulate(0.006)
     speed = result['body.swing_pitch_velocity']
     assert (speed[:4] == 0.0).all() and abs(speed[6]) > 1e-3
+
+
+@pytest.mark.parametrize('name', ['crane', 'two_joint_leg'])
+def test_the_levers_that_are_checked_are_those_that_push(name):
+    """Of the checks before a run, and of the compiled robot at t = 0."""
+    run = isa_ros.load(name)
+    own, result = run.configuration.bodies[0], run.simulate(0.001)
+    for drive in own.sheet.drives:
+        _, levers = motion_of(own.sheet, drive, own.coordinates)
+        lever = float(result[f'body.{drive.actuator}_lever'][0])
+        assert len(levers) == 1 and abs(levers[0] - lever) < 1e-14
 
 
 def test_a_fixed_root_is_where_its_start_says():
