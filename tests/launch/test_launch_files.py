@@ -176,7 +176,7 @@ def test_each_of_several_legs_is_shown_in_its_namespace(leg, installed, tmp_path
     publishers = leg(config=str(tmp_path / 'two.yaml'), namespace='lab')[:2]
     assert [own.given['namespace'] for own in publishers] == ['lab/left', 'lab/right']
     assert all(dict(own.given['remappings'])['/tf'] == '/lab/tf' for own in publishers)
-    with pytest.raises(ConfigError, match='has no leg, or several'):
+    with pytest.raises(ConfigError, match='has no leg or robot, or several'):
         leg(config=str(tmp_path / 'two.yaml'), rviz='true')
 
 
@@ -210,6 +210,87 @@ def test_ros2_control_has_the_leg_of_the_run_and_the_controllers_of_the_file(
         with pytest.raises(RuntimeError, match='spawner-5: ended with exit code 1'):
             node.given['on_exit'](ProcessExited('spawner-5', 1), Context())
     assert 'ros2_control' not in leg()[0].given['parameters'][0]['robot_description'].args[0]
+
+
+@pytest.fixture
+def robot(actions, monkeypatch):
+    """Return what gives the nodes of robot.launch.py, of one launch after the other."""
+    arguments, (function,) = actions('robot.launch.py')
+    defaults = {name: given['default_value'] for name, given in arguments.items()}
+
+    def nodes(**texts: str):
+        found = function.given['function'](defaults | texts)
+        ended(found)
+        return found
+    with held_domain(monkeypatch):
+        yield nodes
+
+
+def test_a_robot_is_launched_with_every_argument_and_shown_with_its_sensors(
+        actions, robot, installed):
+    """By default the quadruped; the frames of its messages are links of its description."""
+    assert actions('robot.launch.py')[0].keys() == actions('leg.launch.py')[0].keys()
+    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
+    publisher, rviz, *actuators, coordinator = robot(rviz='true')
+    assert len(actuators) == 12 and coordinator.given['executable'] == 'coordinator'
+    description = ElementTree.fromstring(
+        publisher.given['parameters'][0]['robot_description'].args[0])
+    links = {link.get('name') for link in description.iterfind('link')}
+    body, = isa_ros.load('quadruped').configuration.bodies
+    assert {message.frame for message in body.messages(1_000_000)[1:]} <= links
+    assert {f'{joint}{end}' for joint in body.joint_space for end in ('', '_load_cell')} <= links
+    assert publisher.given['namespace'] == ''
+    assert rviz.given['arguments'][2:] == ['-f', 'trunk']
+    assert Path(rviz.given['arguments'][1]).name == 'robot.rviz'
+    shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
+    topics = {one['Topic']['Value'] for one in shown['Displays'] if 'Topic' in one}
+    assert topics == {message.topic[1:] for message in body.messages(1_000_000)
+                      if message.topic.endswith('/ground_contact')}
+
+
+def test_several_robots_have_their_nodes_descriptions_and_frames(robot, installed, tmp_path):
+    """Joints keep their names, and all links are the robot's own, once each."""
+    installed |= {'robot_state_publisher': '/opt'}
+    (tmp_path / 'herd.yaml').write_text(yaml.safe_dump({
+        'name': 'herd', 'robots': {'r1': {'file': 'quadruped'}, 'r2': {'file': 'crane'},
+                                   'r3': {'file': 'leg'}}}))
+    *rest, coordinator = robot(config=str(tmp_path / 'herd.yaml'), namespace='lab')
+    publishers, actuators = rest[:3], rest[3:]
+    assert [own.given['namespace'] for own in publishers] == ['lab/r1', 'lab/r2', 'lab/r3']
+    assert coordinator.given['namespace'] == 'lab'
+    run = isa_ros.load(tmp_path / 'herd.yaml').configuration
+    assert [f"{own.given['namespace']}/{own.given['name']}" for own in actuators] == [
+        f'lab/{own.name}' for own in run.actuators]
+    for own, body in zip(publishers, run.bodies):
+        root = ElementTree.fromstring(own.given['parameters'][0]['robot_description'].args[0])
+        links = [link.get('name') for link in root.iterfind('link')]
+        assert len(set(links)) == len(links)
+        assert all(link.startswith(body.prefix) or link == 'world' for link in links)
+        ends = {end.get('link') for joint in root.iterfind('joint')
+                for end in joint if end.tag in ('parent', 'child')}
+        assert ends == set(links)
+        joints = {joint.get('name') for joint in root.iterfind('joint')}
+        assert set(body.joint_space) <= joints
+        assert dict(own.given['remappings'])['/tf'] == '/lab/tf'
+    with pytest.raises(ConfigError, match='herd.yaml has no leg or robot, or several'):
+        robot(config=str(tmp_path / 'herd.yaml'), rviz='true')
+
+
+def test_ros2_control_has_the_joints_of_a_robot_in_its_namespace(robot, installed, tmp_path):
+    path = find('quadruped_torque', CONTROLLERS)
+    body, = isa_ros.load('quadruped').configuration.bodies
+    installed |= dict.fromkeys(
+        ['robot_state_publisher', *controllers_of(path, body).packages], '/opt')
+    (tmp_path / 'one.yaml').write_text(yaml.safe_dump({
+        'name': 'one', 'robots': {'r1': {'file': 'quadruped'}}}))
+    manager, spawner, publisher, *_ = robot(
+        config=str(tmp_path / 'one.yaml'), ros2_control='quadruped_torque', namespace='lab')
+    assert [own.given['namespace'] for own in (manager, spawner, publisher)] == 3 * ['lab/r1']
+    tag = ElementTree.fromstring(
+        publisher.given['parameters'][0]['robot_description'].args[0]).find('ros2_control')
+    assert [joint.get('name') for joint in tag.iterfind('joint')] == list(body.joint_space)
+    assert tag.findtext('hardware/param[@name="joint_commands_topic"]') == '/lab/r1/joint_command'
+    assert tag.findtext('hardware/param[@name="joint_states_topic"]') == '/lab/r1/joint_states'
 
 
 @pytest.mark.parametrize(('texts', 'message'), [

@@ -116,10 +116,12 @@ def test_a_joint_with_a_gain_or_an_effort_is_not_without_a_number(commanded):
 
 
 @pytest.mark.parametrize('namespace', ['', 'lab'])
-@pytest.mark.parametrize('file', shipped(CONTROLLERS).values(), ids=lambda path: path.stem)
+@pytest.mark.parametrize('file', shipped(CONTROLLERS))
 def test_ros_finds_the_nodes_of_the_shipped_controllers_in_any_namespace(
         observer, file, namespace):
-    controllers = controllers_of(file, RUN.leg)
+    file, config = shipped(CONTROLLERS)[file], file.partition('_')[0]
+    body, = load_run(find(config, CONFIG)).bodies
+    controllers = controllers_of(file, body)
     for name in (MANAGER, *controllers.types):
         node = Node(
             name, namespace=namespace, context=observer.context, use_global_arguments=False,
@@ -133,7 +135,7 @@ def test_ros_finds_the_nodes_of_the_shipped_controllers_in_any_namespace(
         elif name == 'joint_state_broadcaster':
             assert value['use_local_topics'] is True
         else:
-            assert value['joints'] == list(JOINTS)
+            assert value['joints'] == list(body.joint_space)
             assert tuple(value.get('command_interfaces', [value.get('interface_name')])
                          ) == controllers.commands
 

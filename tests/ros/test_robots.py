@@ -1,8 +1,11 @@
 """Two legs in namespaces on real nodes: the same bytes, and names of their nodes and topics."""
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import isa_ros
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.runs.leg_control import control_tag
 from isa_ros.config.text.yaml_text import dump
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -117,3 +120,21 @@ def test_an_actuator_of_a_robot_elsewhere_takes_part(domain, tmp_path, files):
                      'lab', '--join-timeout', '60', config=config) as run:
             assert run.exit_code() == 0, run.errors
     assert assert_replays(bag) > 0
+
+
+def test_the_tag_of_ros2_control_names_topics_and_joints_of_a_running_robot(observer, tmp_path):
+    """What its hardware subscribes to is published with all joints, what it publishes is taken."""
+    body, = isa_ros.load('quadruped').configuration.bodies
+    tag = ElementTree.fromstringlist(control_tag(body, ('effort',), 'lab'))
+    commands, states = (tag.findtext(f'hardware/param[@name="joint_{what}_topic"]')
+                        for what in ('commands', 'states'))
+    spinning, found = Spinning(observer), []
+    observer.create_subscription(JointState, states, found.append, 10)
+    with bringup(tmp_path / 'bag', '--in-process', '--namespace', 'lab', '--duration', '1000',
+                 config=find('quadruped', CONFIG)) as run:
+        spinning.wait_for(lambda: found or not run.is_running(), 'the states')
+        assert observer.count_subscribers(commands) == observer.count_publishers(states) == 1
+        run.signal(15)
+        assert run.exit_code() == 130, run.errors
+    joints = {joint.get('name') for joint in tag.iterfind('joint')}
+    assert joints == set(found[0].name) and len(joints) == 12
