@@ -47,7 +47,8 @@ def copy(tmp_path: Path) -> Path:
     for name in ('isa_ros', 'msg_adapters'):
         shutil.copytree(PACKAGES / name, tmp_path / name,
                         ignore=shutil.ignore_patterns('__pycache__'))
-    shutil.copytree(PACKAGES / 'config', tmp_path / 'config')
+    for name in ('config', 'urdf'):
+        shutil.copytree(PACKAGES / name, tmp_path / name)
     shutil.copy(PACKAGES / 'package.xml', tmp_path)
     for file in tmp_path.rglob('*.py'):
         text = file.read_text()
