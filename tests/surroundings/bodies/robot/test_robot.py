@@ -175,3 +175,16 @@ def test_a_long_flight_leaves_no_small_numbers() -> None:
     state = np.frombuffer(own.robot.snapshot(), np.float64, 19 + 18 + 16, 8)
     assert np.all(state[37:] == 0.0)
     assert abs(math.sqrt(np.square(state[3:7]).sum()) - 1.0) < 1e-15
+
+
+@pytest.mark.parametrize(('axis', 'name'), enumerate(('push_roll', 'push_pitch', 'push_yaw')))
+def test_a_moment_turns_the_root_about_its_axis(axis: int, name: str) -> None:
+    """Roll, pitch and yaw are about x, y and z: its work is what w has of that axis."""
+    robots = [Held(made(start=replace(START, position=(0.0, 0.0, 9.0)))) for _ in range(2)]
+    for own in robots:
+        own.robot.release()
+    robots[1].robot.change(Push(**{name: 50.0}))
+    plain, pushed = (own.tick(10) for own in robots)
+    gained = pushed['angular_velocity'] - plain['angular_velocity']
+    assert np.abs(gained).argmax() == axis and gained[axis] > 0.01
+    assert pushed['push_work'] > 0.0
