@@ -118,6 +118,15 @@ def test_a_mirrored_linkage_is_that_of_the_opposite_angle(runs):
             assert found[0][1][0] == -found[1][1][0] != 0.0
 
 
+def test_a_name_replaces_single_keys_of_a_pattern():
+    """One HAA of four has another offset, and is like the leg's in everything else."""
+    own = robot(load_run(ROOT / 'config' / 'quadruped.yaml', {
+        'body.drives.rh_haa': {'offset_deg': 58.0}}))
+    found = {one.name: one.linkage for one in own.drives}
+    assert (found['rh_haa'].offset_deg, found['rh_haa'].sense) == (58.0, found['lf_haa'].sense)
+    assert found['lf_haa'].offset_deg == 59.5
+
+
 def test_a_linkage_of_the_file_has_its_range_mirrored(tmp_path):
     """Legs of one file: -80 to -30 deg of the one are 30 to 80 deg of the mirrored other."""
     own = robot(load_run(ROOT / 'config' / 'hyq_quadruped.yaml', {
