@@ -55,12 +55,14 @@ def test_the_leg_settles_as_the_page_says():
     assert force[2] == pytest.approx(11.5 * STANDARD_GRAVITY, rel=1e-3)
 
 
-@pytest.mark.parametrize('changes', [
-    {'body.drives.lift.base_mm': [1037.0, 0.0, 1836.0]},
-    {'body.drives.lift.retracted_length_mm': 900.0},
-    {'body.drives.lift.retracted_length_mm': 1200.0}, {'body.passive': ['swing_pitch']}])
-def test_the_messages_of_the_page_are_those_of_today(changes):
+@pytest.mark.parametrize('name, changes', [
+    ('crane', {'body.drives.lift.base_mm': [1037.0, 0.0, 1836.0]}),
+    ('crane', {'body.drives.lift.retracted_length_mm': 900.0}),
+    ('crane', {'body.drives.lift.retracted_length_mm': 1200.0}),
+    ('crane', {'body.passive': ['swing_pitch']}),
+    ('two_joint_leg', {'body.drives.hip.offset_deg': 150.0})])
+def test_the_messages_of_the_page_are_those_of_today(name, changes):
     with pytest.raises(ConfigError) as error:
-        load_run(CONFIG / 'crane.yaml', changes)
+        load_run(CONFIG / f'{name}.yaml', changes)
     rows = re.findall(r'^\| `(.*?)` \|', PAGE, re.MULTILINE)
     assert [row for row in rows if row in str(error.value)]

@@ -236,6 +236,10 @@ def _cylinder(
     if 'joint' in own:
         raise ConfigError(f'{place / "joint"} is not used: a cylinder moves all joints between '
                           'the links base and rod')
+    for key in ('low_deg', 'high_deg'):
+        if key in section:
+            raise ConfigError(f'{place / key} is not used: the range of the joint that a cylinder '
+                              'moves is the key range, two numbers')
     frames = {frame.name: frame for frame in tree.frames}
     ends = []
     for key in ('base', 'rod'):
