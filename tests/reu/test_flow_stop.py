@@ -165,6 +165,10 @@ def test_a_fast_force_is_damped_and_a_slow_one_is_borne(setup: np.recarray) -> N
     state = begun(setup)
     first = own.flow_stop_step(0.0, 0.05, 1.0, 1000.0, SUPPLY, setup, state)
     assert first < 0.0      # it gives way to a force that pushes out
+    gain = setup.damping * setup.schedule[(own.POINTS - 1) // 2]    # at mid stroke
+    assert first == pytest.approx(own.opening_for_speed(
+        -gain * (1000.0 - state.slow_force), state.force, SUPPLY, setup))
+    assert abs(state.force) < 0.05 * 1000.0     # which is not the one that damps
     for _ in range(periods(setup, 0.5)):
         last = own.flow_stop_step(0.0, 0.05, 1.0, 1000.0, SUPPLY, setup, state)
         state.rest = 0.0
@@ -187,6 +191,7 @@ def test_it_stands_that_has_stayed_within_its_span_for_20_ms(setup: np.recarray)
     assert own.stands(setup, watched(setup, swinging))
     leaving = [0.05] * n + [0.05 + 1.01 * setup.span]
     assert not own.stands(setup, watched(setup, leaving))
+    assert own.stands(setup, watched(setup, leaving + leaving[-1:] * n))
     for way in (1.0, -1.0):
         creeping = [0.05 + way * 0.2 * setup.span * k for k in range(4 * n)]
         assert not own.stands(setup, watched(setup, creeping))
