@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TYPE_CHECKING
+from typing import Any, NamedTuple
 
 from isa_ros.config.runs.external_config import imported_factory, is_path
 from isa_ros.config.text.keys import ANY_NAME, Key, KeyDifference, Leaf, of_type, ValueKind
@@ -11,9 +11,6 @@ from isa_ros.config.text.sections import names_at, Place, section_at
 from isa_ros.controller import Controller
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.surroundings.callers import cause_of
-
-if TYPE_CHECKING:
-    from isa_ros.config.runs.run_config import RunConfig
 
 CONTROLLERS = 'controllers'
 """Key of a run file, and of a scenario."""
@@ -36,9 +33,9 @@ class ControllerConfig:
         """Return the key of its section."""
         return f'{CONTROLLERS}.{self.name}'
 
-    def made(self, run: 'RunConfig') -> Controller:
+    def made(self, run: Any) -> Controller:
         """
-        Return a new controller: each simulation has its own.
+        Return a new controller for a `RunConfig`: each simulation has its own.
 
         Raises
         ------
