@@ -14,7 +14,7 @@ from typing import Any
 
 from ament_index_python import packages as ament_packages
 from isa_ros.config.paths import CONFIG, CONTROLLERS, find, find_drawing, SCENARIOS
-from isa_ros.config.robots.description import description_of
+from isa_ros.config.robot_description import description_of
 from isa_ros.config.runs.leg_control import control_tag, Controllers, controllers_of, MANAGER
 from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.config.runs.robot_config import RobotConfig
