@@ -164,6 +164,8 @@ def test_a_late_poll_sends_one_heartbeat():
     """Written over SDO, at once; the next one a period after it, however late that is asked."""
     produced = HeartbeatProducer()
     produced.set_period(100, now=0.0)
-    sent = [round(now, 3) for now in (7.0, 7.001, 7.099, 7.101, 7.102, 7.4, 7.401, 7.499, 7.51)
+    sent = [now for now in (7.0, 7.001, 7.099, 7.101, 7.102, 7.2, 7.4, 7.401, 7.499, 7.51)
             if produced.is_due(now)]
-    assert sent == [7.0, 7.101, 7.4, 7.51]
+    assert sent == [7.0, 7.101, 7.2, 7.4, 7.51]     # on its grid, but after a long wait
+    produced.set_period(500, now=0.0)
+    assert [produced.is_due(0.5), produced.is_due(0.5)] == [True, False]
