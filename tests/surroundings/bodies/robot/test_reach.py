@@ -12,7 +12,8 @@ from isa_ros.surroundings.bodies.robot.records import (
     contact_records, drive_records, link_records, speed_records)
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sheet import (
-    Points, RobotDrive, RobotJoint, RobotLink, RobotSheet, RobotStart)
+    Points, RobotContact, RobotDrive, RobotJoint, RobotLink, RobotSheet, RobotStart)
+from isa_ros.surroundings.ground import Ground
 import numpy as np
 import pytest
 from tests.surroundings.bodies.robot.made import random_tree
@@ -127,3 +128,16 @@ def test_a_cylinder_that_passes_its_dead_centre_has_a_port_of_numbers() -> None:
         inverse_masses.append(float(ports['inverse_mass'][0]))
         robot.advance(replies)
     assert min(inverse_masses) < 1e-5 < 1e-3 < max(inverse_masses)
+
+
+def test_the_response_of_hard_ground_is_cut_to_what_a_tick_resolves() -> None:
+    """The boom's tip 0.1 m deep in steel: k and d are at their bounds."""
+    hard = Ground(stiffness=1e9, damping=1.0, friction=0.7, tangential_stiffness=1e5,
+                  tangential_damping=15.0)
+    sheet = replace(boom(1), contacts=(
+        RobotContact(name='tip', link=1, point=(1.5, -1.1, 0.0), ground=hard),))
+    robot, ports = Robot(sheet, RobotStart(joints=(0.0,)), MS), np.zeros(1, LOAD_PORT)
+    assert robot.sample['tip_position'][0] == pytest.approx([1.5, 0.0, -0.1], abs=1e-12)
+    robot.ports(ports)
+    assert ports['stiffness'][0] == pytest.approx(math.pi ** 2 * 1e6, rel=1e-12, abs=0.0)
+    assert ports['damping'][0] == 1e3
