@@ -188,3 +188,20 @@ def test_a_moment_turns_the_root_about_its_axis(axis: int, name: str) -> None:
     gained = pushed['angular_velocity'] - plain['angular_velocity']
     assert np.abs(gained).argmax() == axis and gained[axis] > 0.01
     assert pushed['push_work'] > 0.0
+
+
+def test_the_sample_has_what_acts_at_joints_and_feet() -> None:
+    """Torque = lever times force at each joint; feet touch or not, and store 2/5 k d^2.5."""
+    air = Held(made())
+    sample = air.tick()
+    for drive, force in zip(SHEET.drives, air.replies['force']):
+        joint = drive.actuator.removesuffix('_drive')
+        assert sample[f'{joint}_torque'] == pytest.approx(
+            sample[f'{drive.actuator}_lever'] * force, rel=1e-12, abs=0.0)
+    assert sample['lf_foot_touches'] == sample['elastic_energy'] == 0.0
+    depth = 1e-3
+    lowest = min(sample[f'{leg}_foot_position'][2] for leg in ('lf', 'rf', 'lh', 'rh'))
+    deep = made(start=replace(START, position=(0.0, 0.0, 0.7 - lowest - depth))).sample[0]
+    assert [deep[f'{leg}_foot_touches'] for leg in ('lf', 'rf', 'lh', 'rh')].count(1.0) == 1
+    assert deep['elastic_energy'] == pytest.approx(
+        0.4 * leg_sheet().ground.stiffness * depth ** 2.5, rel=1e-6, abs=0.0)
