@@ -134,7 +134,8 @@ def steps() -> list[bytes]:
     rows.commands['kinds'] = 7
     return [
         encode_hello(RUN, 2, 1_000_000, starts, ROSTER),
-        encode_hello(RUN + 1, 1, 1_000_000, starts, ROSTER), encode_begin(RUN, [b'one', None, b'three']),
+        encode_hello(RUN + 1, 1, 1_000_000, starts, ROSTER),
+        encode_begin(RUN, [b'one', None, b'three']),
         encode_tick(RUN, 0, rows, True), encode_tick(RUN, 1, rows, True),
         encode_tick(RUN, 1, rows, True), encode_save(RUN, -1),
         encode_restore(RUN, -2, 5, [b'one', b'two', b'three']),

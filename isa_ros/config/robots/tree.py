@@ -6,7 +6,6 @@ turn). Every link of the URDF keeps its own axes as a frame of the link that it 
 """
 
 from collections.abc import Iterator
-import math
 from typing import NamedTuple
 
 from isa_ros.config.robots.urdf import Floats, Pose, Urdf, UrdfJoint
@@ -132,12 +131,14 @@ def z_along(axis: Floats) -> Floats:
 def _together(urdf: Urdf, parts: list[_Part]) -> tuple[float, Floats, Floats]:
     """Return mass, centre of mass and inertia about it of links that are fixed together."""
     each = [(urdf.links[part.name], part.pose) for part in parts]
-    mass = math.fsum(link.mass for link, _ in each)
+    places = [pose.place + pose.rotation @ link.com for link, pose in each]
+    mass, moment = 0.0, np.zeros(3)
+    for (link, _), place in zip(each, places):
+        mass += link.mass
+        moment += link.mass * place
     if mass == 0.0:
         return 0.0, np.zeros(3), np.zeros((3, 3))
-    places = [pose.place + pose.rotation @ link.com for link, pose in each]
-    com = sum((link.mass * place for (link, _), place in zip(each, places)), np.zeros(3)) / mass
-    inertia = np.zeros((3, 3))
+    com, inertia = moment / mass, np.zeros((3, 3))
     for (link, pose), place in zip(each, places):
         off = place - com
         inertia += pose.rotation @ link.inertia @ pose.rotation.T + link.mass * (

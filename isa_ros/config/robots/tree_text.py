@@ -1,6 +1,7 @@
 """Keys of the tree of a robot in a resolved text, which so needs no URDF; every bit is kept."""
 
 from dataclasses import dataclass
+from itertools import chain
 import math
 from typing import Any
 
@@ -54,7 +55,7 @@ def _range_of(link: RobotLink) -> tuple[float, float] | None:
 
 def _values(link: RobotLink) -> LinkValues:
     return LinkValues(
-        place=link.joint.place, rotation=sum(link.joint.rotation, ()), mass=link.mass,
+        place=link.joint.place, rotation=tuple(chain(*link.joint.rotation)), mass=link.mass,
         com=link.com, inertia=link.inertia)
 
 
@@ -78,7 +79,7 @@ LINK = KeyTable((
 FRAME = KeyTable((
     Key('link', Value('whole number', _index), 'index of the link that it is fixed to'),),
     rest=Key('values', ParameterSet(FramePlace), '', of=lambda frame: FramePlace(
-        place=frame.place, rotation=sum(frame.rotation, ()))))
+        place=frame.place, rotation=tuple(chain(*frame.rotation)))))
 TREE = KeyTable((
     Key('links', Links(LINK), 'links in depth-first order, the root first'),
     Key('frames', Links(FRAME), 'the links of the URDF')))
