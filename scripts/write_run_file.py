@@ -4,9 +4,10 @@ Write the tables of docs/run_file.md from the rows of the keys of a run file.
     python scripts/write_run_file.py
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
+from types import MappingProxyType
 
 from isa_ros.actuator.link import LinkSheet
 from isa_ros.config.robots.contacts import CONTACT
@@ -33,6 +34,7 @@ from isa_ros.text.table import markdown
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'run_file.md'
 _HEADER = ['key', 'value', 'default', 'meaning']
+_OF_THE_URDF = dict.fromkeys(('low_deg', 'high_deg'), 'of the URDF')
 _IN_TEXT = {InText.NEVER: 'no', InText.IF_ANY: 'yes', InText.ALWAYS: 'yes', InText.ONLY: 'only'}
 
 
@@ -60,10 +62,12 @@ def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
             yield [f'`{f.name}`', value, _default(row.default, row.default_words), row.meaning]
 
 
-def by_kind(union: object) -> list[str]:
-    """Return the lines of the table of the keys of each kind."""
+def by_kind(union: object, defaults: Mapping[str, str] = MappingProxyType({})) -> list[str]:
+    """Return the lines of the table of the keys of each kind; ``defaults`` are known here only."""
     return markdown([['kind', *_HEADER], *(
-        [f'`{kind}`', *row] for kind, cls in members(union).items() for row in _parameters(cls))])
+        [f'`{kind}`', key, value, defaults.get(key.strip('`'), default), meaning]
+        for kind, cls in members(union).items()
+        for key, value, default, meaning in _parameters(cls))])
 
 
 def _default(default: object, words: str) -> str:
@@ -80,7 +84,7 @@ def page(text: str) -> str:
         'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
         'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS),
         'robot': keys(RobotConfig.KEYS), 'drive': keys(DRIVE),
-        'linkage': by_kind(Linkage), 'contact': keys(CONTACT),
+        'linkage': by_kind(Linkage, _OF_THE_URDF), 'contact': keys(CONTACT),
         'joints': keys(START), 'root': parameters(RobotStartValues)})
 
 

@@ -2,7 +2,7 @@
 Links and joints of a URDF, as they are written: https://wiki.ros.org/urdf/XML.
 
 Read are names, parents, places, axes, ranges and inertias; shapes, colours and extensions are
-skipped. A document type, and with it every entity, is refused, so that a file cannot expand.
+skipped.
 """
 
 from collections.abc import Iterator
@@ -11,9 +11,9 @@ import math
 from pathlib import Path
 import re
 from typing import NamedTuple
-from xml.etree.ElementTree import Element, TreeBuilder
-from xml.parsers import expat
+from xml.etree.ElementTree import Element
 
+from isa_ros.config.robots.urdf_text import element_of
 from isa_ros.core.elementary import cos, sin
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -103,7 +103,7 @@ def read_urdf(text: str | bytes, name: str) -> Urdf:
         message names link or joint.
 
     """
-    top = _parsed(text, name)
+    top = element_of(text, name)
     if top.tag != 'robot':
         raise ConfigError(f'{name}: its element is <{top.tag}>, must be <robot>')
     links: dict[str, UrdfLink] = {}
@@ -120,29 +120,6 @@ def read_urdf(text: str | bytes, name: str) -> Urdf:
         joints[element.attrib['name']] = _joint(element, where, links)
     root = _root(links, tuple(joints.values()), name)
     return Urdf(top.get('name', ''), links, tuple(joints.values()), root)
-
-
-def _parsed(text: str | bytes, name: str) -> Element:
-    """Return the element of a document without a document type."""
-    builder = TreeBuilder()
-    parser = expat.ParserCreate()
-    parser.buffer_text = True
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-
-    def refuse(*declared: object) -> None:
-        raise ConfigError(
-            f'{name}: line {parser.CurrentLineNumber}: has a document type, <!DOCTYPE '
-            f'{declared[0]}>, which is not read: a URDF has no entities')
-    parser.StartDoctypeDeclHandler = refuse
-    try:
-        parser.Parse(text, True)
-    except expat.ExpatError as error:
-        raise ConfigError(
-            f'{name}: line {error.lineno}: is not XML: {expat.ErrorString(error.code)}') from error
-    except (ValueError, LookupError) as error:  # its encoding
-        raise ConfigError(f'{name}: is not XML: {error}') from error
-    return builder.close()
 
 
 def _named(element: Element, what: str, name: str) -> str:

@@ -184,6 +184,8 @@ FLAT = INERTIAL.format(1).replace('izz="1"', 'izz="2.1"')
     (pair(more='<link name="c-1"/>'), "a link has the name 'c-1', must be letters, digits and"),
     ('<model/>', 'file: its element is <model>, must be <robot>'),
     ('<robot>', 'file: line 1: is not XML: no element found'),
+    ('<robot>\n<xacro:property name="a" value="1"/></robot>',
+     'file: line 2: has <xacro:property>, which is not read: expand the file first'),
     ('<!DOCTYPE robot [<!ENTITY a "b">]><robot>&a;</robot>', 'file: line 1: has a document type'),
 ])
 def test_what_is_not_a_robot_is_refused_by_a_line(text, message):
