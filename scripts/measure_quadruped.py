@@ -1,8 +1,8 @@
 """
 The quadruped at work, in numbers and pictures: the tables and the figure of docs/quadruped.md.
 
-It stands, squats, is pushed and trots at several speeds. The energy is balanced over trunk and
-ground, and over what the actuators exchange with them.
+It stands, squats, is pushed and trots at several speeds; pose and forces are read from its bag.
+The energy is balanced over trunk and ground, and over what the actuators exchange with them.
 
     python scripts/measure_quadruped.py [FIGURE.png]
 """
@@ -10,7 +10,9 @@ ground, and over what the actuators exchange with them.
 from collections.abc import Sequence
 from pathlib import Path
 import sys
+from tempfile import TemporaryDirectory
 
+from isa_ros.analysis.signals.recorded_result import read
 from isa_ros.examples.quadruped.legs import Legs
 from isa_ros.examples.quadruped.trot import rotation
 from isa_ros.scripting.result import Result
@@ -51,8 +53,10 @@ def simulated(scenario: str, speed: float | None = None) -> Result:
 
 def row(name: str, result: Result) -> Sequence[str]:
     """Return what is shown of a run."""
-    place, time = result['body.position'], result.time
-    w, x, y, z = result['body.orientation'].T
+    with TemporaryDirectory() as folder:
+        recorded = read(result.save(Path(folder) / 'bag'))
+    place, time = recorded['body.position'], recorded.time
+    w, x, y, z = recorded['body.orientation'].T
     roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
     pitch = np.arcsin(2.0 * (w * y - z * x))
     late = time >= min(STEADY, 0.5 * time[-1])
@@ -60,7 +64,7 @@ def row(name: str, result: Result) -> Sequence[str]:
     actuators = [own.name for own in result.scenario.run.actuators]
     linear = [own for own in actuators if not own.endswith('haa')]
     oil = sum(result[f'{own}.supply_volume'][-1] for own in actuators) / time[-1] * 6e4
-    force = max(np.abs(result[f'{own}.force']).max() for own in linear)
+    force = max(np.abs(recorded[f'{own}.force']).max() for own in linear)
     return (name, f'{place[:, 2].min():.3f}', f'{np.abs(roll).max():.3f}',
             f'{np.abs(pitch).max():.3f}', f'{speed:.3f}', f'{oil:.1f}', f'{1e-3 * force:.1f}',
             *(f'{part:.1e}' for part in balances(result, actuators)))
