@@ -23,6 +23,7 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.leg.impact import foot_mass
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose, sample_fields
 from isa_ros.surroundings.bodies.leg.messages import joint_name, leg_messages
@@ -178,8 +179,8 @@ class LegConfig(BodyConfig):
 
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return a line if the ticks are too long for the ground."""
-        return coarse_ticks(
-            self.called, self.sheet, self.start.angles, step_ns)
+        return coarse_ticks(self.called, foot_mass(self.sheet, self.start.angles),
+                            self.sheet.ground.stiffness, step_ns)
 
     @property
     def fields(self) -> Sequence[Field]:

@@ -15,6 +15,7 @@ from isa_ros.config.robots.contacts import (
 from isa_ros.config.robots.drives import (
     DRIVE, DriveConfig, Drives, drives_of, frame_named, in_link, robot_drive)
 from isa_ros.config.robots.geometry import motion_of
+from isa_ros.config.robots.impact import contact_masses
 from isa_ros.config.robots.patterns import names_in
 from isa_ros.config.robots.reach import reach_of, refuse_lever, refuse_stroke
 from isa_ros.config.robots.start import (
@@ -23,6 +24,7 @@ from isa_ros.config.robots.tree import Tree, tree_of
 from isa_ros.config.robots.tree_text import TREE, tree_from
 from isa_ros.config.robots.urdf import load_urdf
 from isa_ros.config.runs.body_config import BodyConfig, Made
+from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import choice_of, InText, Key, Layer, ParameterSet, TEXT, Value
@@ -39,6 +41,7 @@ from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, matrix, Push, RobotDrive, RobotSheet, RobotUnit, vector)
+from isa_ros.surroundings.impact import contact_time
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
@@ -217,6 +220,19 @@ class RobotConfig(BodyConfig):
     def fields(self) -> Sequence[Field]:
         """Return the fields of its sample."""
         return sample_fields(self.sheet, [own.name for own in self.imus])
+
+    def warnings(self, step_ns: int) -> Sequence[str]:
+        """Return a line if the ticks are too long for the ground under one of its contacts."""
+        sheet = self.sheet
+        root = root_pose(self.start, self.tree, sheet.contacts)
+        masses = contact_masses(sheet, self.coordinates, root)
+        found = [(contact_time(mass, contact.ground.stiffness), mass, contact)
+                 for mass, contact in zip(masses, sheet.contacts) if math.isfinite(mass)]
+        if not found:
+            return ()
+        _, mass, contact = min(found, key=lambda one: one[0])
+        return coarse_ticks(
+            f'{contact.name} of {self.called}', mass, contact.ground.stiffness, step_ns)
 
     @property
     def changing(self) -> Push | None:

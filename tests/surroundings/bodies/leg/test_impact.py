@@ -3,8 +3,9 @@
 import math
 
 from isa_ros.surroundings.bodies.leg import motion as kernels
-from isa_ros.surroundings.bodies.leg.impact import contact_time, foot_mass, IMPACT_SPEED
+from isa_ros.surroundings.bodies.leg.impact import foot_mass
 from isa_ros.surroundings.bodies.leg.sheet import leg_record
+from isa_ros.surroundings.impact import contact_time, IMPACT_SPEED
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -47,4 +48,4 @@ def test_the_time_is_that_of_the_equation_it_solves():
         lambda t, y: (y[1], -stiffness / mass * max(y[0], 0.0) ** 1.5), (0.0, 1.0),
         (0.0, IMPACT_SPEED), events=leaves, rtol=1e-10, atol=1e-14, max_step=1e-4)
     # the integration's 1e-10 a step, over a hundred steps
-    assert contact_time(SHEET, JOINTS) == pytest.approx(solved.t[-1], rel=1e-7)
+    assert contact_time(mass, stiffness) == pytest.approx(solved.t[-1], rel=1e-7)
