@@ -9,7 +9,6 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import Values
 from isa_ros.errors import ConfigError
 from isa_ros.text.table import aligned
-import numpy as np
 
 HEADER = ('drive', 'linkage', 'range', 'position', 'stroke', 'start', 'lever')
 
@@ -37,7 +36,7 @@ def draw(config: Path, changes: Values, out: Path) -> str:
 def _row(name: str, own: DrawnDrive) -> tuple[str, ...]:
     reach, scale = own.reach, own.scale
     is_length = reach.turns and not own.is_rotary
-    levers = np.abs(reach.levers) * (1e3 if is_length else 1.0)
+    levers = reach.levers * (1e3 if is_length else 1.0)
     low, high = reach.coordinates[0] / reach.scale, reach.coordinates[-1] / reach.scale
     return (
         name, own.kind, f'{low:.5g} to {high:.5g} {reach.unit}',

@@ -57,6 +57,13 @@ def test_a_crane_is_drawn_from_the_command_line(tmp_path, capsys):
     assert out.read_text(encoding='utf-8').startswith('<?xml')
 
 
+def test_a_lever_of_a_mirrored_joint_is_negative_as_in_the_figure(tmp_path, capsys):
+    assert main(['draw', 'hyq_quadruped', '--out', str(tmp_path / 'hyq.svg')]) == 0
+    levers = {line.split()[0]: line.split()[-4:] for line in capsys.readouterr().out.splitlines()}
+    assert levers['lf_hfe'] == ['21.74', 'to', '45', 'mm']
+    assert levers['lh_hfe'] == ['-45', 'to', '-21.74', 'mm']
+
+
 @pytest.mark.parametrize('arguments, message', [
     (['draw', 'rig_linear', '--out', 'a.png'], 'rig_linear.yaml: has no linkage to draw'),
     (['draw', 'crane', '--out', 'a.doc'], '--out a.doc: must end in one of '),
