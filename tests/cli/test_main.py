@@ -86,9 +86,9 @@ def test_wrong_usage_is_one_line_and_2(
 
 
 @pytest.mark.parametrize('arguments, expected', [
-    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: hyq_leg.yaml, leg.yaml'),
+    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: crane.yaml, hyq_leg.yaml'),
     (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is not a preset of isa_v5"),
-    (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: hyq_leg.yaml'),
+    (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: crane.yaml'),
     (['bringup', 'leg', '--scenario', 'fly'],
      'isa: fly: no such file; shipped: current_step.yaml, device_faults.yaml, drop.yaml'),
     (['bringup', 'leg', '--scenario', 'step'],
