@@ -1,6 +1,6 @@
 """Altered run files, scenarios and models are read or refused in one line."""
 
-from isa_ros.config.text import keys, parameter_sets
+from isa_ros.config.text import key_tables, keys, parameter_sets
 from isa_ros.core import parameter
 import pytest
 from tests.fuzz.property import Broken
@@ -32,9 +32,9 @@ def unchecked(patch):
 
 @pytest.mark.parametrize('plant', [
     lambda patch: patch.setattr(keys.Value, 'read', accept),
-    lambda patch: patch.setattr(keys, '_of_kind', lambda kind, kinds, place: kinds[kind]),
+    lambda patch: patch.setattr(key_tables, 'of_kind', lambda kind, kinds, place: kinds[kind]),
     unchecked,
-    lambda patch: patch.setattr(keys, 'section_at', lambda tree, place: tree)])
+    lambda patch: patch.setattr(key_tables, 'section_at', lambda tree, place: tree)])
 def test_a_guard_that_is_missing_is_found(plant, monkeypatch):
     """Types of names, kinds and sections, and numbers that are not finite."""
     plant(monkeypatch)
