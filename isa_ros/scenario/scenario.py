@@ -24,7 +24,8 @@ from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.fault_reading import read_faults, refuse_changes
+from isa_ros.scenario.changes_together import refuse_changes
+from isa_ros.scenario.fault_reading import read_faults
 from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.rig_changes import refuse_stranger, with_loads, with_starts

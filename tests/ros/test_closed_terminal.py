@@ -3,6 +3,7 @@
 import os
 import pty
 import select
+import signal
 import sys
 
 import pytest
@@ -16,6 +17,7 @@ def test_a_run_ends_with_130_and_a_whole_bag(domain, tmp_path):
     pid, terminal = pty.fork()
     if not pid:
         os.environ['PYTHONPATH'] = str(ROOT)
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)    # a suite under nohup ignores it
         os.execv(sys.executable, [
             sys.executable, '-m', 'isa_ros', 'bringup', str(RIG), '--in-process',
             '--real-time-factor', '1', '--out', str(bag)])
@@ -28,5 +30,17 @@ def test_a_run_ends_with_130_and_a_whole_bag(domain, tmp_path):
         return b't = ' in shown
     wait_for(has_progress, 'the progress')
     os.close(terminal)
-    assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 130
+    ended = []
+
+    def has_ended() -> bool:
+        done, status = os.waitpid(pid, os.WNOHANG)
+        if done:
+            ended.append(os.waitstatus_to_exitcode(status))
+        return bool(ended)
+    try:
+        wait_for(has_ended, 'the end of the run')
+    finally:
+        if not ended:
+            os.kill(pid, signal.SIGKILL)
+    assert ended == [130]
     assert 'message_count' in (bag / 'metadata.yaml').read_text()
