@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 import os
+import signal
 from typing import Any
 
 from hypothesis import settings
@@ -71,6 +72,14 @@ def same_environment() -> Iterator[None]:
     before = _environment()
     yield
     assert _environment() == before
+
+
+@pytest.fixture
+def heard_hang_up() -> Iterator[None]:
+    """Let SIGHUP end what a test starts; a suite under nohup ignores it."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
 
 
 @pytest.fixture(scope='session')

@@ -149,6 +149,7 @@ def test_help_imports_neither_ros_nor_numba() -> None:
     assert result.stdout == '[]\n'
 
 
+@pytest.mark.usefixtures('heard_hang_up')
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_a_command_like_ctrl_c(
         number: signal.Signals, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -38,6 +38,7 @@ def ended(*arguments: str) -> subprocess.CompletedProcess[str]:
         [sys.executable, '-m', *arguments], capture_output=True, text=True, timeout=60.0)
 
 
+@pytest.mark.usefixtures('heard_hang_up')
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.parametrize('module', PROGRAMS)
 def test_a_signal_while_a_program_loads_ends_it_at_once(
