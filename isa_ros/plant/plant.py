@@ -11,10 +11,11 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
-    block_valve, chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
+    block_valve, chambers, coil, friction, mechanics, relief, sensors, spool, thermal,
     valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
+from isa_ros.plant.service_lines import rigid_lines
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -157,19 +158,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     else:
         p_a, p_b, more_a, more_b = y.chambers.p_a, y.chambers.p_b, 0.0, 0.0
         per_a, per_b = chambers.elastances(s, plant.chambers)
-    opened, leaks = servo_valve.conductances(y.spool.position, plant.valve)
-    line_a, line_b = p_a, p_b   # between servo valve and poppets, where there are any
-    if plant.block.is_on > 0.0:
-        z, delta = y.block.lift, plant.valve.delta
-        line_a, delta_a = block_valve.blocked_line(
-            opened[0], opened[1], z, p_s, p_t, p_a, per_a, delta, plant.block)
-        line_b, delta_b = block_valve.blocked_line(
-            opened[3], opened[2], z, p_s, p_t, p_b, per_b, delta, plant.block)
-        roots = servo_valve.smoothed_roots(line_a, line_b, p_s, p_t, delta_a, delta_b)
-        rates.block.lift = plant.block.slew
-    else:
-        roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
-    q_a, q_b, q_p, q_t = servo_valve.metered(opened, roots)
+    q_a, q_b, q_p, q_t = rigid_lines(
+        y, p_a, p_b, per_a, per_b, p_s, p_t, plant, rates, counts, powers)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
@@ -193,10 +183,6 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         chambers.hydraulic_force(p_a, p_b, plant.chambers) - f_friction - f_sensor + f_stop
     ) / plant.mechanics.inertia
     if counts:
-        powers.leakage, powers.throttling = servo_valve.land_losses(
-            opened, leaks, roots, line_a, line_b, p_s, p_t)
-        if plant.block.is_on > 0.0:
-            powers.throttling += q_a * (line_a - p_a) + q_b * (line_b - p_b)
         powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
         powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
         powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
