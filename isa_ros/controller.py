@@ -168,7 +168,7 @@ def fill_requests(
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
         row = requests[names.index(name)]
         fill_command(name, Setpoint(*setpoint), row)
-        if samples is not None and row['kinds'] & HAS_SETPOINT and math.isnan(row['position']):
+        if samples is not None and math.isnan(row['position']):
             _complete(name, samples[name], row)
 
 

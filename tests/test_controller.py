@@ -2,7 +2,8 @@
 
 import math
 
-from isa_ros.controller import Controller, fill_requests, merge_requests, Setpoint
+from isa_ros.controller import (
+    Controller, fill_requests, merge_requests, only_of, Setpoint, Setpoints)
 from isa_ros.core.device import FORCE, IMPEDANCE, POSITION
 from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
@@ -107,3 +108,41 @@ def test_a_controller_that_keeps_nothing_says_so_itself():
         Controller().snapshot()
     with pytest.raises(RunError, match=r'Controller has no restore\(\)'):
         Controller().restore(b'')
+
+
+def rows_of(setpoints: Setpoints) -> np.ndarray:
+    """Return the rows of three actuators that setpoints of several fill."""
+    rows = np.zeros(3, COMMAND)
+    fill_requests(setpoints, ('haa', 'hfe', 'kfe'), rows)
+    return rows
+
+
+def test_setpoints_as_arrays_are_those_of_each_actuator():
+    """Numbers are for all of them, a gain of None keeps the one in force, others get nothing."""
+    found = rows_of(Setpoints(
+        ('kfe', 'haa'), np.array([0.1, 0.2]), 0.3, [4.0, 5.0], damping=np.array([60.0, 70.0])))
+    one_by_one = np.zeros(3, COMMAND)
+    fill_requests({'kfe': Setpoint(0.1, 0.3, 4.0, damping=60.0),
+                   'haa': Setpoint(0.2, 0.3, 5.0, damping=70.0)}, ('haa', 'hfe', 'kfe'), one_by_one)
+    assert found['kinds'].tolist() == [HAS_SETPOINT, 0, HAS_SETPOINT]
+    for row in (0, 2):
+        assert found[row].tobytes() == one_by_one[row].tobytes()
+
+
+@pytest.mark.parametrize(('values', 'message'), [
+    ({'position': [0.1, math.nan]}, 'kfe: setpoint position = nan, must be finite'),
+    ({'effort': [math.inf, 0.0]}, 'haa: setpoint effort = inf, must be finite'),
+    ({'stiffness': [1e4, -1.0]}, 'kfe: setpoint stiffness = -1.0, must be >= 0'),
+    ({'velocity': [1.0, 2.0, 3.0]},
+     r'setpoint velocity = \[1.0, 2.0, 3.0\], must be a number or 2 numbers'),
+    ({'position': 'far'}, "setpoint position = 'far', must be a number or 2 numbers"),
+    ({'names': ('haa', 'knee')}, "'knee' is not an actuator of the run; valid: haa, hfe, kfe")])
+def test_arrays_with_a_value_that_cannot_be_are_refused_by_actuator(values, message):
+    with pytest.raises(SetpointError, match=message):
+        rows_of(Setpoints(**{'names': ('haa', 'kfe'), 'position': 0.0} | values))
+
+
+def test_the_body_of_a_state_is_the_only_one():
+    left, right = (np.zeros(1, SAMPLE).view(np.recarray)[0] for _ in range(2))
+    assert only_of({}) is None and only_of({'left': left, 'right': right}) is None
+    assert only_of({'left': left}) is left

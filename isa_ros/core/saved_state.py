@@ -20,11 +20,11 @@ from isa_ros.errors import ConfigError, RunError
 import numpy as np
 from numpy.typing import NDArray
 
-FORMAT = 3
+FORMAT = 4
 MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
 TIME_BYTES = 8    # at the begin of a snapshot of an actuator or a leg: t, ns
-_BYTES = ('load', 'requests')
+_BYTES = ('load', 'requests', 'stops')
 _CHECKSUM = 'sha256'
 _SHOWN = 12  # digits of a digest
 
@@ -39,6 +39,8 @@ class RunState:
     """Actuators in the order of the configuration, then its controllers."""
     requests: bytes
     """`COMMAND` rows that controllers asked for, to take effect at ``tick``."""
+    stops: bytes = b''
+    """For how long each emergency stop has lasted; empty of a run without any."""
 
     def rows_of_requests(self, n_actuators: int) -> NDArray[np.void]:
         """Return the `COMMAND` rows that take effect at ``tick``, (n_actuators,)."""

@@ -23,12 +23,14 @@ from isa_ros.errors import ConfigError
 from isa_ros.reu.protection_sheet import changed_reactions, reaction_of
 from isa_ros.surroundings.dump import NoneDump
 from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
+import numpy as np
 
 LINE = 'reu.device.emergency_stop'
 """Of an actuator."""
 DUMP = 'dump.opened'
 """Of a supply with a dump valve."""
 LONGEST_STOP = 2.0      # s that a dump waits for an actuator from which nothing comes
+_TICKS = np.dtype('<i8')   # for which a line has been open
 
 
 class StopGroup(NamedTuple):
@@ -66,14 +68,46 @@ class EmergencyStops:
         """Begin at t = 0, with the reactions of the sheets; participants are told anew."""
         self._told = dict.fromkeys(self._told)
         self._is_idle = False
-        self._waited = dict.fromkeys((group.line for group in self._groups), 0)
+        self._lasted = dict.fromkeys((group.line for group in self._groups), 0)
         self._trips = {group.line: dict(group.trips) for group in self._groups}
 
-    def restore(self, participants: Sequence[bytes]) -> None:
-        """Go on with ``participants`` of a saved state, actuators first, and their reactions."""
+    def snapshot(self) -> bytes:
+        """Return for how many ticks each line has been open."""
+        return np.array([self._lasted[group.line] for group in self._groups], _TICKS).tobytes()
+
+    def lasted_in(self, snapshot: bytes, tick: int) -> Sequence[int]:
+        """
+        Return what `restore` needs of a `snapshot` at ``tick``.
+
+        Raises
+        ------
+        ConfigError
+            It is not one of these groups, or a line has been open before t = 0.
+
+        """
+        expected = len(self._groups) * _TICKS.itemsize
+        if len(snapshot) != expected:
+            raise ConfigError(
+                f'saved state of the emergency stops has {len(snapshot)} bytes, must have '
+                f'{expected}')
+        lasted: list[int] = np.frombuffer(snapshot, _TICKS).tolist()
+        for group, own in zip(self._groups, lasted):
+            if not 0 <= own <= tick:
+                raise ConfigError(
+                    f'{group.line}: saved state has it open for {own} ticks, must be >= 0 and <= '
+                    f'{tick}')
+        return lasted
+
+    def restore(self, participants: Sequence[bytes], lasted: Sequence[int]) -> None:
+        """
+        Go on with ``participants`` of a saved state, actuators first, and their reactions.
+
+        ``lasted`` is from `lasted_in`.
+        """
         for group in self._groups:
             self._told |= dict.fromkeys([*group.trips, *group.supplies])
         self.restart()
+        self._lasted = {group.line: own for group, own in zip(self._groups, lasted)}
         self.take_tuned({row: values_in_force(own.sheet, own.load, state) for row, (own, state)
                          in enumerate(zip(self._actuators, participants))})
 
@@ -143,12 +177,12 @@ class EmergencyStops:
             if self.cause(group, samples):
                 self._surroundings.tune({group.line: 1.0})
             if self._surroundings.tuned_value(group.line) == 0.0:
-                self._waited[group.line] = 0
+                self._lasted[group.line] = 0
                 continue
-            self._waited[group.line] += 1
+            self._lasted[group.line] += 1
             self._is_idle = False
             lines.update(dict.fromkeys(group.trips, True))
-            are_asked = self._waited[group.line] * self._step < LONGEST_STOP
+            are_asked = self._lasted[group.line] * self._step < LONGEST_STOP
             if not group.waits or all(
                     _is_off(samples[row], are_asked) for row in group.trips):
                 dumps.update(dict.fromkeys(group.supplies, True))

@@ -180,7 +180,8 @@ class TickLoop:
         """
         return RunState(
             tick=self.ticks, load=self._surroundings.snapshot(),
-            participants=self.transport.snapshots(), requests=self.rows.requests.tobytes())
+            participants=self.transport.snapshots(), requests=self.rows.requests.tobytes(),
+            stops=b'' if self.stops is None else self.stops.snapshot())
 
     def restore(self, state: RunState) -> None:
         """
@@ -193,9 +194,10 @@ class TickLoop:
 
         """
         requests = state.rows_of_requests(len(self.rows.requests))
+        lasted = None if self.stops is None else self.stops.lasted_in(state.stops, state.tick)
         self._surroundings.restore(state.load)
         self.transport.restore(state.tick, state.participants, self.rows)
-        if self.stops is not None:
-            self.stops.restore(state.participants)
+        if self.stops is not None and lasted is not None:
+            self.stops.restore(state.participants, lasted)
         self.rows.requests[:] = requests
         self.ticks = state.tick

@@ -20,7 +20,8 @@ STATE = RunState(tick=7, load=b'load', participants=[b'haa', b''],
 @given(strategies.integers(0, MAX_TICKS - 1), strategies.binary(),
        strategies.lists(strategies.binary()))
 def test_the_text_loses_nothing(tick, load, participants):
-    state = RunState(tick=tick, load=load, participants=participants, requests=b'')
+    state = RunState(
+        tick=tick, load=load, participants=participants, requests=b'', stops=load[::-1])
     assert RunState.from_json(state.to_json('digest', {}), 'digest', 'file') == state
 
 
@@ -36,7 +37,7 @@ def test_the_configuration_must_be_the_same():
     ('load', 'xyz', 'is no saved state of a run'),
     ('load', None, 'is no saved state of a run'),
     ('participants', 3, 'is no saved state of a run'),
-    ('format', 2, 'format 2, must be 3')])
+    ('format', 3, 'format 3, must be 4')])
 def test_a_text_of_other_content_is_refused(key, value, message):
     with pytest.raises(ConfigError, match=message):
         RunState.from_json(sealed(content(STATE) | {key: value}), 'digest', 'file')

@@ -27,6 +27,7 @@ CYCLES, FIRST_ENABLED, SWITCHED = 120, 30, 10
 """Of the master that does not look at its inputs."""
 FIFO = 20
 PATIENT_US, IMPATIENT_US = 5_000_000, 1000
+PATIENCE_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class Plan:
     """Whether the master commands by its cycle only, instead of the example's."""
     receive_us: int = PATIENT_US
     """How long the blind master waits for a frame."""
+    ends_silent: bool = False
+    """Whether the run is interrupted once the blind master's silence was noticed."""
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -58,6 +61,8 @@ def main(arguments: Sequence[str]) -> None:
     with served('ethercat', plan.config, '--interface', SLAVE_END, '--out', plan.bag,
                 *plan.options, has_ros=plan.has_ros) as slaves, redirect_stdout(printed):
         lost = blind(plan) if plan.is_blind else example(plan)
+        if plan.ends_silent:
+            slaves.interrupt()
     Path(arguments[1]).write_text(json.dumps({
         'printed': printed.getvalue().splitlines(), 'lines': slaves.lines, 'lost': lost,
         'code': slaves.code}))
@@ -99,6 +104,9 @@ def blind(plan: Plan) -> int:
                 word, ethercat_master.CSP, start + round(lift), 0, 0, 0, 0, math.nan, math.nan)
         master.send_processdata()
         lost += master.receive_processdata(plan.receive_us) != master.expected_wkc
+    deadline = time.monotonic() + PATIENCE_S
+    while plan.ends_silent and master.read_state() == pysoem.OP_STATE:
+        assert time.monotonic() < deadline, 'the slaves stay operational'
     return lost
 
 

@@ -29,6 +29,10 @@ class Served:
                 return
         raise SystemExit(self.lines[-1] if self.lines else 'isa bus has ended')
 
+    def interrupt(self) -> None:
+        """End it as Ctrl-C does."""
+        self._process.send_signal(signal.SIGINT)
+
     def end(self) -> None:
         """Wait for its end."""
         self.lines += self._process.communicate(timeout=END_S)[1].splitlines()

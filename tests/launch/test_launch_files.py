@@ -280,12 +280,15 @@ def test_ros2_control_has_the_joints_of_a_robot_in_its_namespace(robot, installe
     path = find('quadruped_torque', CONTROLLERS)
     body, = isa_ros.load('quadruped').configuration.bodies
     installed |= dict.fromkeys(
-        ['robot_state_publisher', *controllers_of(path, body).packages], '/opt')
+        ['robot_state_publisher', 'rviz2', *controllers_of(path, body).packages], '/opt')
     (tmp_path / 'one.yaml').write_text(yaml.safe_dump({
         'name': 'one', 'robots': {'r1': {'file': 'quadruped'}}}))
-    manager, spawner, publisher, *_ = robot(
-        config=str(tmp_path / 'one.yaml'), ros2_control='quadruped_torque', namespace='lab')
-    assert [own.given['namespace'] for own in (manager, spawner, publisher)] == 3 * ['lab/r1']
+    manager, spawner, publisher, rviz, *_ = robot(
+        config=str(tmp_path / 'one.yaml'), ros2_control='quadruped_torque', namespace='lab',
+        rviz='true')
+    assert [own.given['namespace'] for own in (manager, spawner, publisher, rviz)] == (
+        4 * ['lab/r1'])
+    assert rviz.given['arguments'][2:] == ['-f', 'r1/trunk']    # a link of the description
     tag = ElementTree.fromstring(
         publisher.given['parameters'][0]['robot_description'].args[0]).find('ros2_control')
     assert [joint.get('name') for joint in tag.iterfind('joint')] == list(body.joint_space)

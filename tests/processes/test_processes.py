@@ -62,6 +62,15 @@ def test_arguments_are_yaml_that_keeps_its_type():
         '-p', 'duration:=2.0']
 
 
+@pytest.mark.parametrize('namespace', ['lab', '/lab', '/lab/'])
+def test_a_node_of_a_robot_is_in_its_namespace_below_that_of_the_run(namespace):
+    process = Process('r1/haa', 'actuator', ())
+    assert process.placed(namespace) == ('lab/r1', 'haa')
+    assert process.ros_arguments(namespace) == [
+        '--ros-args', '-r', '__node:=haa', '-r', '__ns:=/lab/r1']
+    assert process.placed('') == ('r1', 'haa')
+
+
 def test_all_processes_of_a_run_have_the_same_files():
     found = run_processes(load_run(CONFIG), CONFIG, Path('/drop.yaml'), {'duration': 2.0})
     assert [p.name for p in found] == ['haa', 'hfe', 'kfe', 'coordinator']

@@ -154,7 +154,7 @@ def test_outputs_that_are_off_do_not_let_the_force_oscillate():
     state, supervised = watched.state, watched.own.supervision
     for is_on, swings in ((1, True), (0, False)):
         supervised.force_activity, state.status.is_on = 2000.0, is_on
-        assert (own.supervise(SUPPLY, CONSTANTS, state, supervised)[2] > 1500.0) is swings
+        assert (own.supervise(SUPPLY, CONSTANTS, state, supervised)[2] > 1500.0) == swings
 
 
 def test_a_stop_has_a_position_error_only_once_it_holds_a_place():

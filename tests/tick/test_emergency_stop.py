@@ -27,6 +27,8 @@ SUPPLY = {
     'precharge_mpa': 12.0, 'polytropic_exponent': 1.3, 'line_volume_l': 0.5,
     'bulk_modulus': 1e9, 'pump_flow_lpm': 12.0, 'pump_lag_s': 0.03, 'pump_band_mpa': 0.5,
     'relief_mpa': 22.5, 'relief_lpm_per_mpa': 10.0, 'dump': {'kind': 'valve'}}
+LINKED = {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0,
+          'loss': 0.0, 'watchdog_ms': 8.0}
 ENDED_MS = 300  # ramp, 200 ms at rest, and closing poppets
 
 
@@ -214,9 +216,7 @@ def test_an_actuator_in_two_groups_is_released_when_both_are():
 
 def test_it_reaches_an_actuator_whose_link_is_lost():
     """The line is a wire of its own: the frames of the bus do not carry it."""
-    linked = {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0,
-              'loss': 0.0, 'watchdog_ms': 8.0}
-    simulation = moving(link=linked)
+    simulation = moving(link=LINKED)
     simulation.tune('right', {'link.loss': 1.0})
     advance(simulation, 30)
     simulation.emergency_stop()
@@ -229,11 +229,38 @@ def test_it_reaches_an_actuator_whose_link_is_lost():
     assert dumped(simulation) > 0.9     # no stop lasts longer
 
 
+def test_a_run_that_is_saved_while_a_dump_waits_goes_on_byte_for_byte():
+    """What it has waited is part of the state: the dump opens 2 s after the stop all the same."""
+    simulation, restored = moving(link=LINKED), run(link=LINKED).simulation()
+    simulation.tune('right', {'link.loss': 1.0})
+    advance(simulation, 30)
+    simulation.emergency_stop()
+    advance(simulation, 1200)
+    restored.restore(simulation.snapshot())
+    for own in (simulation, restored):
+        advance(own, round((LONGEST_STOP - 1.2) / 1e-3) - 2)
+        assert dumped(own) == 0.0
+        advance(own, 20)
+        assert dumped(own) > 0.0
+    assert restored.snapshot() == simulation.snapshot()
+
+
+@pytest.mark.parametrize(('lasted', 'words'), [
+    (b'', 'emergency stops has 0 bytes, must have 8'),
+    ((-1).to_bytes(8, 'little', signed=True), 'pair.opened: saved state has it open for -1 ticks'),
+    ((4).to_bytes(8, 'little'), 'open for 4 ticks, must be >= 0 and <= 3')])
+def test_a_saved_state_whose_line_has_been_open_for_other_ticks_is_refused(lasted, words):
+    simulation = run().simulation()
+    advance(simulation, 3)
+    state = simulation.loop.save()
+    with pytest.raises(ConfigError, match=words):
+        simulation.loop.restore(replace(state, stops=lasted))
+    assert simulation.loop.save() == state
+
+
 def test_a_dump_waits_for_one_that_brakes_behind_a_lost_link():
     """The other is off at once: silence alone is no rest."""
-    linked = {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0,
-              'loss': 0.0, 'watchdog_ms': 8.0}
-    simulation = moving(link=linked)
+    simulation = moving(link=LINKED)
     simulation.tune('right', {'link.loss': 1.0})
     simulation.step()
     simulation.emergency_stop()
