@@ -123,7 +123,8 @@ def test_setpoints_as_arrays_are_those_of_each_actuator():
         ('kfe', 'haa'), np.array([0.1, 0.2]), 0.3, [4.0, 5.0], damping=np.array([60.0, 70.0])))
     one_by_one = np.zeros(3, COMMAND)
     fill_requests({'kfe': Setpoint(0.1, 0.3, 4.0, damping=60.0),
-                   'haa': Setpoint(0.2, 0.3, 5.0, damping=70.0)}, ('haa', 'hfe', 'kfe'), one_by_one)
+                   'haa': Setpoint(0.2, 0.3, 5.0, damping=70.0)},
+                  ('haa', 'hfe', 'kfe'), one_by_one)
     assert found['kinds'].tolist() == [HAS_SETPOINT, 0, HAS_SETPOINT]
     for row in (0, 2):
         assert found[row].tobytes() == one_by_one[row].tobytes()

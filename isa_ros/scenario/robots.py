@@ -16,6 +16,7 @@ from typing import Any
 
 from isa_ros.config.paths import SCENARIOS
 from isa_ros.config.runs.body_config import BODY
+from isa_ros.config.runs.controller_config import CONTROLLERS
 from isa_ros.config.runs.emergency_stops import ALL
 from isa_ros.config.runs.robots import agreed, robot_files, Sections
 from isa_ros.config.runs.run_config import ROBOTS
@@ -26,7 +27,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import TARGETS
 from isa_ros.surroundings.surroundings import EMERGENCY_STOP
 
-_BY_NAME = ('tracks', 'loads', 'bodies')
+_BY_NAME = ('tracks', 'loads', 'bodies', CONTROLLERS)
 _LISTS = ('faults', 'changes')
 _OF_RUN = ('duration_s', 'beyond_range')
 _LEG = 'leg'

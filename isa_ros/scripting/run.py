@@ -11,6 +11,7 @@ import warnings
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.config.runs.external_config import imported_factory
+from isa_ros.config.runs.one_robot import of_its_robot
 from isa_ros.config.runs.robots import run_with_robots
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import replaced, SCENARIO
@@ -119,7 +120,7 @@ class Run:
         """
         named = self._named(controllers)
         return Simulation(
-            self._with_names(list(named)), list(named.values()), self._factories(body))
+            self._with_names(list(named)), self._placed(named), self._factories(body))
 
     def simulate(
             self, duration: float | None = None, controllers: Controllers = (), *,
@@ -157,7 +158,7 @@ class Run:
             plan = plan.with_faults(faults)
         report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
         result = simulated(
-            Simulation(plan, list(named.values()), self._factories(body)), n_ticks, report)
+            Simulation(plan, own._placed(named), self._factories(body)), n_ticks, report)
         happened = Tripped()
         happened.add(result.trips)
         for line in (*happened.lines(), *counts_of(self.actuators, result.log.samples[-1])):
@@ -175,6 +176,12 @@ class Run:
                     f'two controllers are named {name}; give a mapping from names to controllers')
             named[name] = controller
         return named
+
+    def _placed(self, named: Mapping[str, Controller]) -> list[Controller]:
+        """Return controllers by name, those in the namespace of a robot for this one alone."""
+        run = self.configuration
+        return [of_its_robot(own, name, run, f'{self._config.name}: controllers.{name}')
+                for name, own in named.items()]
 
     def _factories(self, body: Factories | None) -> Mapping[str, BodyFactory]:
         """Return what makes the external bodies, by name."""

@@ -110,6 +110,18 @@ def test_a_scenario_of_robots_is_refused_by_its_own_name(scenario, message):
     assert message in str(error.value)
 
 
+def test_a_push_of_the_body_is_one_of_the_robot_and_a_range_is_that_of_all():
+    """And what their files say of setpoints beyond the range holds for the run."""
+    pushed = {'file': 'quadruped_jolt', 'duration_s': 3.0, 'beyond_range': 'accept'}
+    run = isa_ros.load(
+        {'name': 'herd', 'robots': {name: {'file': 'quadruped'} for name in ('r1', 'r2')}},
+        {'name': 'jolts', 'robots': {'r1': pushed, 'r2': pushed}})
+    assert {fault.target for fault in run.scenario.faults} == {'r1', 'r2'}
+    assert all(name.startswith('push_') for fault in run.scenario.faults
+               for name in (key.rpartition('.')[2] for key in fault.values))
+    assert run.scenario.accepts_beyond
+
+
 def test_a_scenario_stands_beside_those_of_its_robots():
     """Its tracks and starts win; the robots' duration is its own."""
     run = isa_ros.load(PAIR, {

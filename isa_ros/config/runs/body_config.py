@@ -11,7 +11,7 @@ from typing import ClassVar, NamedTuple
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.key_tables import KeyTable
-from isa_ros.config.text.names import placed
+from isa_ros.config.text.names import parted, placed
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
@@ -90,6 +90,12 @@ class BodyConfig:
         return replace(
             self, name=namespace if self.name == BODY else placed(namespace, self.name),
             joints=tuple((joint, placed(namespace, name)) for joint, name in self.joints))
+
+    def out_of_namespace(self, namespace: str) -> 'BodyConfig':
+        """Return it with the names of its robot's own file; inverse of `in_namespace`."""
+        return replace(
+            self, name=BODY if self.name == namespace else parted(self.name)[1],
+            joints=tuple((joint, parted(name)[1]) for joint, name in self.joints))
 
     @property
     def label(self) -> str:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from isa_ros.config.runs.external_config import imported_factory, is_path
+from isa_ros.config.runs.one_robot import of_its_robot, one_robot
 from isa_ros.config.text.keys import ANY_NAME, Key, KeyDifference, Leaf, of_type, ValueKind
-from isa_ros.config.text.names import refuse_bad_name
+from isa_ros.config.text.names import parted, refuse_bad_name
 from isa_ros.config.text.sections import names_at, Place, section_at
 from isa_ros.controller import Controller
 from isa_ros.errors import ConfigError, IsaError
@@ -29,6 +30,11 @@ class ControllerConfig:
     """The other keys, for the class to check."""
 
     @property
+    def section(self) -> dict[str, Any]:
+        """Return its section."""
+        return {CLASS: self.maker, **self.values}
+
+    @property
     def label(self) -> str:
         """Return the key of its section."""
         return f'{CONTROLLERS}.{self.name}'
@@ -37,10 +43,12 @@ class ControllerConfig:
         """
         Return a new controller for a `RunConfig`: each simulation has its own.
 
+        In a namespace it is made for the robot of this name alone, and sees no other.
+
         Raises
         ------
         ConfigError
-            Its class cannot be imported, or refuses its values.
+            Its class cannot be imported, or refuses its values; or there is no such robot.
 
         """
         made: object = imported_factory(self.maker, f'{self.label}.{CLASS}')
@@ -48,12 +56,15 @@ class ControllerConfig:
             raise ConfigError(
                 f'{self.label}.{CLASS} = {self.maker}: must be a class derived from '
                 'isa_ros.Controller')
+        where, robot = f'{run.source}: {self.label}', parted(self.name)[0]
+        alone = one_robot(run, robot, where) if robot else run
         try:
-            return made.of(run, self.values, f'{run.source}: {self.label}')
+            own = made.of(alone, self.values, where)
         except IsaError:
             raise
         except Exception as error:
             raise ConfigError(f'{self.label}: {cause_of(error)}') from error
+        return of_its_robot(own, self.name, run, where)
 
 
 class Named(NamedTuple):
@@ -81,7 +92,7 @@ class Controllers(ValueKind):
         if not value.called:
             return list(value.nodes)
         return {name: {} for name in value.nodes} | {
-            own.name: {CLASS: own.maker, **own.values} for own in value.called}
+            own.name: own.section for own in value.called}
 
     def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
         """Return a row for each section, whose values are those of its class."""
@@ -92,8 +103,7 @@ class Controllers(ValueKind):
         if value.nodes or not value.called:
             yield Leaf(key, Named(value.nodes), row)
         for own in value.called:
-            tree = {CLASS: own.maker, **own.values}
-            yield from _leaves(tree, f'{key}.{own.name}')
+            yield from _leaves(own.section, f'{key}.{own.name}')
 
 
 def _leaves(tree: Any, key: str) -> Iterator[Leaf]:
@@ -122,11 +132,11 @@ def controllers_at(
     found = {own.name: own for own in before}
     for name, own in section_at(tree, place).items():
         below = place / name
-        refuse_bad_name(name, f'{below}: the name')
+        refuse_bad_name(name, f'{below}: the name', is_placed=True)
         values = dict(section_at(own, below))
         known = found.get(name)
         if known is not None:
-            values = {CLASS: known.maker, **known.values, **values}
+            values = {**known.section, **values}
         if CLASS not in values:
             raise ConfigError(f'{below} lacks {CLASS}, module:Class of the controller')
         maker = of_type(values.pop(CLASS), str, below / CLASS)

@@ -9,7 +9,8 @@ Several robots in one run: each from a run file of its own, in a namespace.
       r2: {file: leg, actuators: {kfe: {preset: table_4}}}    # other values, by its file's keys
 
 The actuator ``kfe`` of the robot ``r1`` is ``r1/kfe``, its body ``r1``, its supply ``r1/supply``,
-and its actuators are a group of emergency stops, ``r1``, or its groups are ``r1/GROUP``. The run
+and its actuators are a group of emergency stops, ``r1``, or its groups are ``r1/GROUP``. A
+controller of its file with a class is ``r1/NAME`` and sees no other robot. The run
 file itself may have actuators and bodies beside them. Its ``supply`` or ``emergency_stops`` stand
 instead of those of the robots, and one of its ``supplies`` feeds those of their actuators that it
 names. What belongs to the whole run, as ``step_ms``, it gives for all, or the robots agree on it.
@@ -22,6 +23,7 @@ from typing import Any, NamedTuple
 from isa_ros.config.models.links import LINK
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.body_config import BODY
+from isa_ros.config.runs.controller_config import CONTROLLERS
 from isa_ros.config.runs.emergency_stops import EmergencyStopConfig, KEY as EMERGENCY_STOPS
 from isa_ros.config.runs.run_config import (
     Origins, refuse_nested, ROBOTS, RUN, run_of, RunConfig)
@@ -35,13 +37,14 @@ from isa_ros.errors import ConfigError
 Sections = dict[str, Any]
 """The tree of a file, or a part of it."""
 FILE = 'file'
-_OF_ROBOT = (SUPPLY, 'supplies', 'actuators', 'leg', BODY, 'bodies', EMERGENCY_STOPS, LINK)
+_OF_ROBOT = (SUPPLY, 'supplies', 'actuators', 'leg', BODY, 'bodies', EMERGENCY_STOPS, LINK,
+             CONTROLLERS)
 """Keys of a robot's file that may stand beside ``file``."""
 _HANDED_DOWN = ('step_ms', 'controller_offset_ms', LINK)
 """Keys of the run file that each robot is checked with."""
 _OF_RUN = {'step_ns': 'step_ms', 'controller_offset_ns': 'controller_offset_ms',
            **{key: key for key in ('tick_timeout_s', 'seed', 'accept', 'start_time_s', 'record',
-                                   'controllers')}}
+                                   CONTROLLERS)}}
 """Keys of a resolved text for the whole run, with those of a run file."""
 
 
@@ -135,8 +138,10 @@ def run_with_robots(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         return run_of(tree, place)
     origins: Origins = {}
     parts: dict[str, Sections] = {}
+    called: Sections = {}
     for name, run, its in _robots(tree, place / ROBOTS):
-        parts[name] = RUN.tree(run)
+        parts[name] = RUN.tree(replace(run, called=()))
+        called |= {own.name: own.section for own in run.called}
         origins = {**origins, **its}
     own: Sections = {
         key: value for key, value in tree.items() if key not in (ROBOTS, LINK)}
@@ -155,6 +160,9 @@ def run_with_robots(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
     for key in ('actuators', 'bodies', *(() if EMERGENCY_STOPS in own else (EMERGENCY_STOPS,))):
         for part in parts.values():
             _add(joined[key], part.get(key, {}), place / key)
+    if called:
+        joined[CONTROLLERS] = _with_sections(joined.get(CONTROLLERS, []), place / CONTROLLERS)
+        _add(joined[CONTROLLERS], called, place / CONTROLLERS)
     run, its = run_of({key: value for key, value in joined.items() if value != {}}, place)
     return run, {**its, **origins}
 
@@ -181,6 +189,7 @@ def _in_namespace(run: RunConfig, robot: str) -> RunConfig:
         run,
         actuators=tuple(replace(own, name=placed(robot, own.name)) for own in run.actuators),
         bodies=tuple(own.in_namespace(robot) for own in run.bodies),
+        called=tuple(replace(own, name=placed(robot, own.name)) for own in run.called),
         supplies=tuple(replace(own, name=placed(robot, own.name), feeds=all_there(own.feeds))
                        for own in run.supplies),
         emergency_stops=tuple(
@@ -193,6 +202,13 @@ def _key_in(key: str, robot: str) -> str:
     """Return the key of a sheet in the text of the run, from that in the text of a robot."""
     head, _, rest = key.partition('.')
     return f'bodies.{robot}.{rest}' if head == BODY else f'{head}.{placed(robot, rest)}'
+
+
+def _with_sections(controllers: Any, place: Place) -> Sections:
+    """Return controllers as sections, of which those of nodes are empty."""
+    if isinstance(controllers, list):
+        return {name: {} for name in names_at(controllers, place)}
+    return dict(section_at(controllers, place))
 
 
 def _own(own: Sections, key: str, place: Place) -> Sections:

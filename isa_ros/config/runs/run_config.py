@@ -18,13 +18,14 @@ from isa_ros.config.runs.emergency_stops import (
     ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.one_robot import one_robot
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
 from isa_ros.config.text.key_tables import KeyTable, Named, OneOf
 from isa_ros.config.text.keys import (
     InText, Key, Layer, NAME, nanoseconds, number, ParameterSet, TEXT, Value)
-from isa_ros.config.text.names import COORDINATOR, refuse_bad_name
+from isa_ros.config.text.names import COORDINATOR, parted, refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
 from isa_ros.core.noise import seed_of
@@ -168,22 +169,26 @@ class RunConfig:
 
         """
         for name in names:
-            refuse_bad_name(name, f'{self.source}: controllers')
+            refuse_bad_name(name, f'{self.source}: controllers', is_placed=True)
         every = (*self.controllers, *names)
-        taken = [COORDINATOR, *(actuator.name for actuator in self.actuators),
-                 *(own.name for own in self.called)]
-        for k, name in enumerate(every):
-            if name in (*taken, *every[:k]):
+        self._refuse_taken([*(own.name for own in self.called), *every])
+        return replace(self, controllers=every)
+
+    def _refuse_taken(self, controllers: Sequence[str]) -> None:
+        """Refuse a name that a controller shares with another one or with an actuator."""
+        taken = [COORDINATOR, *(actuator.name for actuator in self.actuators)]
+        for k, name in enumerate(controllers):
+            if name in (before := [*taken, *controllers[:k]]):
                 raise ConfigError(
                     f'{self.source}: controllers: the name {name!r} is taken; '
-                    f'taken: {", ".join([*taken, *every[:k]])}')
-        return replace(self, controllers=every)
+                    f'taken: {", ".join(before)}')
 
     def calling(self, called: Sequence[ControllerConfig]) -> 'RunConfig':
         """Return the run with these controllers of its own; as `with_controllers`."""
-        nodes = self.controllers
-        named = replace(self, controllers=(), called=())
-        named.with_controllers([*nodes, *(own.name for own in called)])
+        self._refuse_taken([*self.controllers, *(own.name for own in called)])
+        for own in called:
+            if robot := parted(own.name)[0]:
+                one_robot(self, robot, f'{self.source}: {own.label}')
         return replace(self, called=tuple(called))
 
     def with_body(self, body: BodyConfig) -> 'RunConfig':

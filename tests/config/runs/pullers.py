@@ -31,6 +31,31 @@ class Puller(Controller):
         """Do nothing."""
 
 
+class Counting(Puller):
+    """Pulls by as many newtons as it was called; begins at `start`."""
+
+    def __init__(self, actuator: str, first: float = 0.0) -> None:
+        super().__init__(first, actuator)
+        self._first = first
+
+    def start(self, names):
+        """Begin anew."""
+        self._force = self._first
+
+    def step(self, state):
+        """Return the force."""
+        self._force += 1.0
+        return super().step(state)
+
+    def snapshot(self) -> bytes:
+        """Return the number."""
+        return str(self._force).encode()
+
+    def restore(self, snapshot: bytes) -> None:
+        """Go on from it."""
+        self._force = float(snapshot.decode())
+
+
 def pull(run, values, where):
     """Return a controller, but not as a class."""
     return Puller(**values)

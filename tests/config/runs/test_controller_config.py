@@ -1,7 +1,9 @@
 """Controllers that a run makes and calls: their sections in run files and scenarios."""
 
+from dataclasses import replace
+
 import isa_ros
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.controller import Controller
 from isa_ros.errors import ConfigError
@@ -10,6 +12,7 @@ import pytest
 from tests.config.runs.pullers import Puller
 
 PULLER = 'tests.config.runs.pullers:Puller'
+COUNTING = 'tests.config.runs.pullers:Counting'
 HFE = {'force': 200.0, 'actuator': 'hfe'}
 
 
@@ -75,6 +78,51 @@ def test_a_saved_simulation_continues_with_its_controllers():
     assert first.samples['hfe'].tobytes() == second.samples['hfe'].tobytes()
 
 
+def test_each_continues_from_its_own_state_and_a_reset_begins_anew():
+    """Two that count: the state of the first is not that of the second."""
+    run = leg(few={'class': COUNTING, 'actuator': 'hfe'},
+              many={'class': COUNTING, 'actuator': 'kfe', 'first': 500.0})
+    first, second = run.simulation(), run.simulation()
+    for _ in range(5):
+        first.step()
+    state = first.snapshot()
+    second.restore(state)
+    for own in (first, second):
+        for _ in range(3):
+            own.step()
+    assert [float(row['effort']) for row in second.applied[1:]] == [7.0, 507.0]
+    assert first.snapshot() == second.snapshot()
+    second.reset()
+    for _ in range(2):
+        second.step()
+    assert [float(row['effort']) for row in second.applied[1:]] == [1.0, 501.0]
+    saved = first.loop.save()
+    with pytest.raises(ConfigError, match='has 4 participants, the run has 5'):
+        second.loop.restore(replace(saved, participants=saved.participants[:4]))
+
+
+def test_every_value_of_a_section_is_told_under_its_key():
+    """Those in lists and sections too, as `isa params` shows them."""
+    tables = isa_ros.load('leg', changes={'controllers': {'trot': {
+        'class': PULLER, 'feet': [{'gain': 1.5}, {'gain': 2.5}], 'speeds': [0.25, 0.75]},
+        'sway': {}}}).configuration
+    leaves = {leaf.key: leaf.value for leaf in RUN.leaves(tables, '')
+              if leaf.key.startswith('controllers')}
+    assert leaves.pop('controllers').nodes == ('sway',)
+    assert leaves == {
+        'controllers.trot.class': PULLER, 'controllers.trot.feet[0].gain': 1.5,
+        'controllers.trot.feet[1].gain': 2.5, 'controllers.trot.speeds[0]': 0.25,
+        'controllers.trot.speeds[1]': 0.75}
+    plain = isa_ros.load('leg').configuration
+    assert [leaf.key for leaf in RUN.leaves(plain, '') if leaf.key.startswith('contr')] == [
+        'controller_offset_ns', 'controllers']
+
+
+def test_a_node_has_no_name_of_a_class():
+    with pytest.raises(ConfigError, match="controllers: the name 'pull' is taken"):
+        leg(pull={'class': PULLER, **HFE}).configuration.with_controllers(['pull'])
+
+
 @pytest.mark.parametrize('controllers, message', [
     ({'pull': {'force': 1.0}}, 'leg.yaml: controllers.pull lacks class, module:Class'),
     ({'pull': {'class': 'pullers'}},
@@ -95,6 +143,7 @@ def test_refused_as_the_file_is_read(controllers, message):
     ({'class': 'no_such_module:Pull'}, 'no_such_module'),
     ({'class': 'tests.config.runs.pullers:Missing'}, 'has no function Missing'),
     ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
+    ({'class': 'collections:OrderedDict'}, 'must be a class derived from isa_ros.Controller'),
     ({'class': PULLER, 'farce': 2.0}, 'farce'),
     ({'class': PULLER, 'force': -1.0, 'actuator': 'hfe'},
      'leg.yaml: controllers.pull: force = -1 N, must be >= 0 N')])
@@ -103,6 +152,7 @@ def test_refused_before_the_run_begins(section, message):
         leg(pull=section).simulation()
     assert 'controllers.pull' in str(refused.value)
     assert message in str(refused.value)
+    assert str(refused.value).count('controllers.pull') == 1
 
 
 def test_two_classes_may_request_the_same_actuator_the_last_wins():

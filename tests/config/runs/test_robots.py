@@ -5,7 +5,7 @@ from typing import Any
 
 import isa_ros
 from isa_ros.config.listing import describe
-from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.paths import CONFIG, find, find_drawing
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.yaml_text import dump, read
 from isa_ros.errors import ConfigError
@@ -151,11 +151,31 @@ def test_what_belongs_to_the_run_is_that_of_the_robots_or_given(tmp_path: Path):
     (pair(supplies={'r2/supply': PUMP | {'feeds': []}}), 'supplies.r2/supply: the name is'),
     (pair(actuators={'ram': RAM}), "pair.yaml: supplies: 'ram' is not fed"),
     (pair(supply=PUMP, actuators={'r1_kfe': RAM}), "'r1_kfe' and 'r1/kfe' must differ in more"),
+    (pair(supply=PUMP, actuators={'ram': RAM}, bodies={
+        'r1_kfe': {'kind': 'external', 'actuators': ['ram']}}),
+     "'r1/kfe' and 'r1_kfe' must differ in more"),
+    (pair(bodies={'coordinator': {'kind': 'external', 'actuators': ['r1/kfe']}}),
+     "bodies.coordinator: the name 'coordinator' is taken"),
 ])
 def test_a_refusal_names_file_key_and_robot(tree, message):
     with pytest.raises(ConfigError) as error:
         of(tree)
     assert message in str(error.value)
+
+
+def test_a_robot_with_other_values_has_the_files_beside_its_own(tmp_path: Path):
+    """Its URDF stands in the folder of its run file, not in that of the run."""
+    (tmp_path / 'own').mkdir()
+    (tmp_path / 'own' / 'my.urdf').write_text(find_drawing('urdf/two_joint_leg.urdf').read_text())
+    hopper = read(find('two_joint_leg', CONFIG))
+    hopper['body']['urdf'] = 'my.urdf'  # type: ignore[index, call-overload]
+    (tmp_path / 'own' / 'hopper.yaml').write_text(dump(hopper))
+    (tmp_path / 'two.yaml').write_text(dump(pair(robots={
+        'r1': {'file': 'own/hopper.yaml'},
+        'r2': {'file': 'own/hopper.yaml', 'supply': {'pressure_mpa': 16.0}}})))
+    run = isa_ros.load(tmp_path / 'two.yaml').configuration
+    assert run.bodies[0].tree == run.bodies[1].tree
+    assert [own.sheet.pressure_mpa for own in run.supplies] == [20.7, 16.0]
 
 
 def test_what_is_wrong_in_the_file_of_a_robot_has_its_name(tmp_path: Path):
