@@ -18,6 +18,7 @@ from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
 from isa_ros.plant.block_valve import drive_block
 from isa_ros.plant.coil import coil_heat
+from isa_ros.plant.hysteresis import copy_plays
 from isa_ros.plant.plant import exact_force, PLANT
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
@@ -121,7 +122,7 @@ def take_port(incoming, is_shared, port, state):
 
 @kernel
 def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_state, channels,
-             reply, sample, thermal, link, memory):
+             reply, sample, thermal, plays, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
 
@@ -131,6 +132,8 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
     state = continuous[0]
     if actuator.plant.thermal.is_on:
         warm(thermal.oil, actuator.plant)
+    if actuator.plant.hysteresis.is_on > 0.0:
+        copy_plays(plays, actuator.plant.hysteresis.plays)
     y[0, TOTALS_AT:] = 0.0
     elastic = stored_elastically(state, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
@@ -148,6 +151,8 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
         reply.mean_forces[window] = state.totals.impulse / (window_steps * PLANT_STEP)
     end_steps(steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port,
               actuator, continuous, rates, y, k)
+    if actuator.plant.hysteresis.is_on > 0.0:
+        copy_plays(actuator.plant.hysteresis.plays, plays)
     add_tare(steps * PLANT_STEP, port, actuator.plant.valve, state.totals)
     reply.force = exact_force(
         state.plant, state.load.position, state.load.velocity, actuator.plant)
@@ -205,7 +210,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         take_port(incoming[n], memory.is_shared[n], port, continuous[0])
         tick_row(first_step, steps, port, memory.constants[n], continuous, rates, y, k, reu,
                  memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
-                 link, memory)
+                 memory.plays[n], link, memory)
         settle(reu.status, memory.applied[n])
         if link < 0:
             memory.observed[n] = memory.samples[n]

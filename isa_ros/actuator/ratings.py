@@ -5,6 +5,7 @@ import math
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MICRO, MILLI
+from isa_ros.plant.hysteresis import widest_play
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
 from isa_ros.reu.block import Pid
@@ -99,6 +100,7 @@ def _valve_evidence(
     return record(
         VALVE_EVIDENCE, is_watched=int(has_sensor and is_closed),
         is_piloted=int(own.kind == PILOTED), gain=gain, stop=plant.valve.x_max,
+        play=widest_play(plant.hysteresis) * plant.valve.k_spool,
         share=period / (lag + spool_lag + period))
 
 

@@ -8,6 +8,7 @@ from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import LINK_STATE
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.plant.channels import CHANNELS_STATE
+from isa_ros.plant.hysteresis import PLAYS
 from isa_ros.plant.thermal import THERMAL_STATE
 from isa_ros.reu.cascade import REU_STATE
 import numpy as np
@@ -49,6 +50,8 @@ class Memory(NamedTuple):
     """`COMMAND` that took effect in the last tick, at its start or from its link, (n,)."""
     thermals: np.ndarray
     """`THERMAL_STATE`, (n,)."""
+    plays: np.ndarray
+    """`PLAYS` of the valve's hysteresis at the end of the last tick, (n,)."""
     links: np.ndarray
     """`LINK_STATE`, (n,)."""
     sent: np.ndarray
@@ -72,8 +75,8 @@ def memory_of(n: int) -> Memory:
         states=flat(continuous), slopes=flat(rates), reu=np.zeros(n, REU_STATE),
         channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
-        thermals=np.zeros(n, THERMAL_STATE), links=np.zeros(n, LINK_STATE),
-        sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
+        thermals=np.zeros(n, THERMAL_STATE), plays=np.zeros(n, PLAYS),
+        links=np.zeros(n, LINK_STATE), sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
         commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),
         observed=np.zeros(n, SAMPLE))
 

@@ -9,7 +9,8 @@ from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.signals import Records
 from isa_ros.errors import SimulationDiverged
 
-_SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
+_SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal',
+          'plays')
 """The rows of a snapshot, in their order."""
 _SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
 """Those of an actuator with a link, behind the others."""
@@ -28,7 +29,7 @@ class SavedRows:
         self._names: tuple[str, ...] = _SAVED
         self._rows: list[Records] = [
             memory.continuous[:1], memory.reu, memory.channels, memory.ports, memory.pending,
-            memory.applied, memory.replies, memory.samples, memory.thermals]
+            memory.applied, memory.replies, memory.samples, memory.thermals, memory.plays]
         if has_link:
             self._names += _SAVED_OF_LINK
             self._rows += [getattr(memory, name) for name in _SAVED_OF_LINK]

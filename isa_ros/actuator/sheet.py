@@ -80,6 +80,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         raise ConfigError(
             f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
             f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
+    _refuse_hysteresis_of_pilot(plant)
     _refuse_limit_beyond_stop(sheet)
     if isinstance(plant.block_valve, NoneBlock):
         for key, reaction in reactions_of(reu.protection).items():
@@ -87,6 +88,16 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
                 raise ConfigError(
                     f'reu.protection.{key} = block: there are no block valves; set '
                     'plant.block_valve.kind: poppet, or the reaction disable')
+
+
+def _refuse_hysteresis_of_pilot(plant: LinearPlant | RotaryPlant) -> None:
+    """Refuse the hysteresis of a valve whose loop is in the REU: it is not that of the pilot."""
+    widest = plant.valve.hysteresis_percent
+    if widest > 0.0 and isinstance(plant.spool, PilotedSpool):
+        raise ConfigError(
+            f'plant.valve.hysteresis_percent = {widest:g} % and plant.spool.kind = piloted: a '
+            'data sheet has that of the closed loop of the spool, and the current is that of the '
+            'pilot; set plant.spool.kind: closed_loop, or 0 %')
 
 
 _KINDS: dict[type, str] = {

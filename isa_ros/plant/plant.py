@@ -11,7 +11,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
-    block_valve, chambers, coil, friction, mechanics, relief, sensors, spool, thermal,
+    block_valve, chambers, coil, friction, hysteresis, mechanics, relief, sensors, spool, thermal,
     valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
@@ -32,6 +32,7 @@ PLANT = np.dtype([
     ('sensors', sensors.SENSORS),
     ('thermal', thermal.THERMAL),
     ('block', block_valve.BLOCK),
+    ('hysteresis', hysteresis.HYSTERESIS),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -101,6 +102,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
             sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, lands, seals,
             own_spool),
         block=block_valve.block_record(sheet.block_valve),
+        hysteresis=hysteresis.hysteresis_record(sheet.valve, lands.x_max / lands.k_spool),
         )], PLANT).view(np.recarray)
 
 
@@ -145,8 +147,10 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     s, v = y.mechanics.position, y.mechanics.velocity
 
     coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
-    current = (coil.coil_current(y.coil, plant.coil) / plant.coil.parallel
-               + spool.null_bias(p_s, p_t, plant.spool))
+    current = coil.coil_current(y.coil, plant.coil) / plant.coil.parallel
+    if plant.hysteresis.is_on > 0.0:
+        current = hysteresis.magnetised(current, plant.hysteresis)
+    current += spool.null_bias(p_s, p_t, plant.spool)
     spool.spool_rates(y.spool, current, plant.valve.k_spool, plant.spool, rates.spool)
 
     if of_volumes:
@@ -195,7 +199,10 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
 
 @kernel
 def settle(y, plant):
-    """Apply to one `PLANT_STATE` after a step what no rate can: stops of spool and poppets."""
+    """Apply to one `PLANT_STATE` after a step what no rate can: stops and plays."""
+    if plant.hysteresis.is_on > 0.0:
+        hysteresis.remember(
+            coil.coil_current(y.coil, plant.coil) / plant.coil.parallel, plant.hysteresis)
     stop_spool(y.spool, plant.valve.x_max)
     if plant.spool.is_stuck > 0.0:
         block_spool(y.spool)

@@ -3,7 +3,7 @@ Metering of the servo valve: four lands, their flow curve, leakage and lap.
 
 ``x > 0`` opens P-A and B-T and extends. Chamber flows are positive INTO the chamber,
 ``q_p`` positive OUT OF the supply and ``q_t`` positive INTO the return.
-Neglected: flow forces and hysteresis.
+Neglected: flow forces.
 """
 
 import math

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from isa_ros.core.parameter import choice, numbers, parameter, Parameters
 from isa_ros.core.piecewise import POINTS
 from isa_ros.errors import ParameterError
+from isa_ros.plant.hysteresis import Hysteretic
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +24,7 @@ class Lap(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Valve(Parameters):
+class Valve(Hysteretic):
     """Parameters of every valve; currents on the series scale of figure 5."""
 
     spool_gain_mm_per_ma: float = parameter(
@@ -170,7 +171,7 @@ def _refuse_unpaired(currents: Sequence[float], name: str, values: Sequence[floa
 
 
 @dataclass(frozen=True, kw_only=True)
-class DataSheetValve(Parameters):
+class DataSheetValve(Hysteretic):
     """Servo valve as its data sheet has it: flow and leakage over current, the same both ways."""
 
     rated_drop_mpa: float = parameter(

@@ -15,6 +15,7 @@ VALVE_EVIDENCE = np.dtype([
     ('is_piloted', 'i8'),       # 1: the spool block closes its loop, and has its reference
     ('gain', 'f8'),             # of that reference, 1; or m per A of the amplifier
     ('stop', 'f8'),             # of the spool, m
+    ('play', 'f8'),             # half of its hysteresis, m
     ('share', 'f8'),            # of the way to the reference that a conversion takes, dt/(T + dt)
 ])
 EVIDENCE = np.dtype([
@@ -70,9 +71,10 @@ def jump_speed(position, period, state):
 @kernel
 def spool_deviation(state, evidence):
     """
-    Return abs(x - x_e), how far the spool is from where its reference puts it  (R15), in m.
+    Return abs(x - x_e) - h, how far the spool is from where its reference puts it  (R15), in m.
 
-    T x_e' = g r - x_e by the backward rule, g r clipped at the stops; a null bias is a deviation.
+    T x_e' = g r - x_e by the backward rule, g r clipped at the stops; a null bias is a deviation,
+    but not half of the hysteresis, h; at least 0.
     ``state`` is a `REU_STATE`; its reference r is the amplifier's current, or that of the loop of
     a piloted spool. In the mode of the current that loop is open, and the spool anywhere: 0.
     """
@@ -88,4 +90,4 @@ def spool_deviation(state, evidence):
         return 0.0
     target = max(-valve.stop, min(valve.stop, valve.gain * reference))
     own.spool += valve.share * (target - own.spool)
-    return abs(spool - own.spool)
+    return max(0.0, abs(spool - own.spool) - valve.play)

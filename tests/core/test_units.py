@@ -13,7 +13,8 @@ from tests.sheets import actuator_sheet
 SUFFIXES = {
     '_mpa': 'MPa', '_kpa': 'kPa', '_mm': 'mm', '_um': 'um', '_lpm': 'l/min', '_l': 'l',
     '_ml': 'ml', '_ma': 'mA', '_ms': 'ms', '_us': 'us', '_hz': 'Hz', '_deg': 'deg', '_v': 'V',
-    '_per_ma': '/mA', '_rad_per_s': 'rad/s', '_lpm_per_mpa': 'l/min/MPa', '_kg': 'kg'}
+    '_per_ma': '/mA', '_percent': '%',
+    '_rad_per_s': 'rad/s', '_lpm_per_mpa': 'l/min/MPa', '_kg': 'kg'}
 
 
 @pytest.mark.parametrize(('unit', 'si', 'scale'), [

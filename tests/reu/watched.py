@@ -50,7 +50,7 @@ class Watched:
             EVIDENCE, area_a=AREA_A, area_b=AREA_B, force_range=RATINGS.force_range,
             stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
             offset_steps=0, valve=record(
-                VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN,
+                VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN, play=0.0,
                 stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
         supervision = record(
             SUPERVISION, area_a=AREA_A, area_b=AREA_B, flow_gain=FLOW_GAIN, stroke=STROKE,

@@ -99,6 +99,12 @@ def conclusions(measured: Bode) -> Sequence[str]:
     """Return bandwidth, margins and ripple, and warnings, a line each."""
     lines = [*_figures(measured)] if not measured.rest.hunts else []
     lines.append(_ripple(measured))
+    own = measured.loop.sheet.plant.valve
+    if own.hysteresis_percent > 0.0:
+        lines.append(
+            f'the valve has {own.hysteresis_percent:g} % hysteresis: gain and phase are those of '
+            'this amplitude; --set plant.valve.hysteresis_percent=0,'
+            'plant.valve.threshold_percent=0 is the linear response')
     frequency, coherence = measured.response.frequency, measured.response.coherence
     least = int(coherence.argmin())
     if coherence[least] < TRUSTED:

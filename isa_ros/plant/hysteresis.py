@@ -1,0 +1,117 @@
+"""
+Hysteresis and threshold of the servo valve: from the coil's current to the one that moves it.
+
+Friction holds the armature and the spool back within a play as wide as the threshold; behind it
+four plays of little weight are the magnetic part. The loop of the rated current is as wide as the
+sheet says, a small one hardly wider than the threshold, and how fast the current goes makes no
+difference. Currents are on the series scale of figure 5, before the null bias; percentages are
+those of the current at the spool's stop, one side, as data sheets have them.
+Neglected: that a valve at rest creeps, and that a ripple of the oil takes hysteresis away.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
+from isa_ros.errors import ParameterError
+import numpy as np
+
+_PERCENT = 0.01
+_PLAYS = 4      # of the magnetic part: at 5 % of the current 3 make 2 % more of a loop, 8 none
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hysteretic(Parameters):
+    """Hysteresis of a valve, in percent of the current at the spool's stop."""
+
+    hysteresis_percent: float = parameter(
+        'widest difference of two currents for one opening, over a slow cycle of the whole '
+        'current', '%', absent=0.0, source='assumed, neglected', changeable=True, ge=0.0, le=20.0)
+    threshold_percent: float = parameter(
+        'change of the current after a reversal until the spool moves back', '%', absent=0.0,
+        source='assumed, neglected', changeable=True, ge=0.0, le=20.0)
+    hysteresis_from_percent: float = parameter(
+        'amplitude from which a loop is as wide as stated', '%', absent=20.0,
+        source='derived from a public bench record: at 20 % as wide as at 100 %', ge=1.0, le=200.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a hysteresis below the threshold, and one that its amplitude cannot have."""
+        super().__post_init__()
+        widest, threshold = self.hysteresis_percent, self.threshold_percent
+        if widest < threshold:
+            raise ParameterError(
+                f'hysteresis_percent = {widest:g} %, must be >= threshold_percent = '
+                f'{threshold:g} %: the threshold is part of it')
+        most = threshold + 0.5 * self.hysteresis_from_percent
+        if widest > most:
+            raise ParameterError(
+                f'hysteresis_percent = {widest:g} %, must be <= {most:g} %, threshold_percent and '
+                f'half of hysteresis_from_percent = {self.hysteresis_from_percent:g} %')
+
+
+PLAYS = np.dtype([
+    ('held', 'f8'), ('p_1', 'f8'), ('p_2', 'f8'), ('p_3', 'f8'), ('p_4', 'f8')])
+"""Outputs of the plays, A: where the valve was last."""
+HYSTERESIS = np.dtype([
+    ('is_on', 'f8'),
+    ('half', 'f8'),         # of the threshold, A
+    ('share', 'f8'),        # W, of the current in the plays behind it
+    ('r_1', 'f8'), ('r_2', 'f8'), ('r_3', 'f8'), ('r_4', 'f8'),     # their half widths, A
+    ('plays', PLAYS),       # during a tick; between ticks they are a row of the memory
+])
+
+
+def hysteresis_record(sheet: Hysteretic, rated: float) -> np.record:
+    """Return the `HYSTERESIS` record of a valve with the ``rated`` current (A) at its stop."""
+    widest, threshold = sheet.hysteresis_percent, sheet.threshold_percent
+    reach = 0.5 * sheet.hysteresis_from_percent     # R of V24, in percent
+    halves = {f'r_{j + 1}': (j + 0.5) / _PLAYS * reach * _PERCENT * rated for j in range(_PLAYS)}
+    return record(
+        HYSTERESIS, is_on=float(widest > 0.0), half=0.5 * threshold * _PERCENT * rated,
+        share=(widest - threshold) / reach, plays=np.zeros(1, PLAYS)[0], **halves)
+
+
+def widest_play(own: np.record) -> float:
+    """Return H/2, how far the valve's current is at most from the coil's, A."""
+    return float(own.half + own.share * 0.25 * (own.r_1 + own.r_2 + own.r_3 + own.r_4))
+
+
+@kernel
+def play(u, held, half):
+    """Return what a play of half width ``half`` at ``held`` passes on of ``u``, in A  (V23)."""
+    return min(max(held, u - half), u + half)
+
+
+@kernel
+def magnetised(current, own):
+    """
+    Return the current that moves the valve, A; ``own`` is a `HYSTERESIS` record  (V24).
+
+    u = P_{T/2}(i), i_h = u + W (mean of P_{r_j}(u) - u), r_j = (j - 1/2)/4 R, W = (H - T)/R. The
+    mean of both branches is i. The plays are those of the step's begin, at each of its stages.
+    """
+    at = own.plays
+    u = play(current, at.held, own.half)
+    total = (play(u, at.p_1, own.r_1) + play(u, at.p_2, own.r_2)
+             + play(u, at.p_3, own.r_3) + play(u, at.p_4, own.r_4))
+    return u + own.share * (0.25 * total - u)
+
+
+@kernel
+def remember(current, own):
+    """Move the plays to the current (A) with which a step has ended  (V25)."""
+    at = own.plays
+    u = play(current, at.held, own.half)
+    at.held = u
+    at.p_1 = play(u, at.p_1, own.r_1)
+    at.p_2 = play(u, at.p_2, own.r_2)
+    at.p_3 = play(u, at.p_3, own.r_3)
+    at.p_4 = play(u, at.p_4, own.r_4)
+
+
+@kernel
+def copy_plays(source, target):
+    """Copy the plays of one `PLAYS` row to another."""
+    target.held, target.p_1, target.p_2 = source.held, source.p_1, source.p_2
+    target.p_3, target.p_4 = source.p_3, source.p_4
