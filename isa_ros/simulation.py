@@ -77,7 +77,7 @@ class Simulation:
         """The actuators, with their samples as rows."""
         self.surroundings = surroundings_of(run, self._factories)
         """Supplies and bodies, with their samples as rows."""
-        supplies = [own.name for own in self.surroundings.circuits]
+        supplies = [own.name for own in run.sampled_supplies]
         transport: Transport = InProcess(self.group, self.surroundings.starts())
         controllers = [*self._controllers, *(own.made(run) for own in run.called)]
         if controllers:

@@ -26,6 +26,9 @@ from isa_ros.config.text.keys import InText, parameter_rows, REQUIRED
 from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.circuits.line import Wall
+from isa_ros.surroundings.circuits.oil import Oil
+from isa_ros.surroundings.circuits.sheet import Part
 from isa_ros.surroundings.dump import LagDump, NoneDump, ValveDump
 from isa_ros.surroundings.return_line import ReturnLine
 from isa_ros.surroundings.supply import SupplySheet
@@ -57,7 +60,8 @@ def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
     for f in fields(cls):
         row = rows[f.name]
         if 'doc' in f.metadata:
-            value = ' or '.join(f.metadata['names']) if 'names' in f.metadata else (
+            value = 'name' if 'is_name' in f.metadata else ' or '.join(
+                f.metadata['names']) if 'names' in f.metadata else (
                 f'number{"s" if "length" in f.metadata else ""}, {f.metadata["unit"]}')
             yield [f'`{f.name}`', value, _default(row.default, row.default_words), row.meaning]
 
@@ -78,6 +82,7 @@ def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
     return with_parts(text, {
         'run': keys(RUN), 'supplies': keys(SUPPLY_KEYS), 'supply': by_kind(SupplySheet),
+        'part': by_kind(Part), 'oil': parameters(Oil), 'wall': by_kind(Wall),
         'return line': by_kind(ReturnLine), 'dump': by_kind(NoneDump | LagDump | ValveDump),
         'emergency stop': keys(GROUP), 'record': keys(RECORD),
         'storage': parameters(Storage), 'link': parameters(LinkSheet),

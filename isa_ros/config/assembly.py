@@ -1,6 +1,6 @@
 """Creates the actuators of a run and their surroundings from its configuration."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from isa_ros.actuator.actuator import Timing
@@ -9,10 +9,12 @@ from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.config.runs.body_config import BodyFactory, Made
 from isa_ros.config.runs.external_config import at_rest
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.signals import START
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
+from isa_ros.surroundings.circuits.circuit import Fed
 from isa_ros.surroundings.surroundings import SupplyCircuit, Surroundings
 import numpy as np
 
@@ -57,7 +59,8 @@ def surroundings_of(
         slope = 0.0
         for row in rows:  # in this order: `sum` of Python 3.12 rounds differently
             slope += largest_flow_slope(plants[row].valve, supply.span)
-        circuits.append(SupplyCircuit(supply.name, supply.sheet, rows, slope))
+        circuits.append(SupplyCircuit(
+            supply.name, supply.sheet, rows, slope, _fed(run, supply, plants)))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
     starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
@@ -70,6 +73,20 @@ def surroundings_of(
     return Surroundings(
         circuits, bodies, starts, [plant.mechanics.k_s for plant in plants], run.step_ns,
         [group.name for group in run.stop_groups])
+
+
+def _fed(run: RunConfig, supply: SupplyConfig, plants: Sequence[np.record]) -> tuple[Fed, ...]:
+    """Return the manifolds of a circuit that feed actuators, with their rows."""
+    rows: dict[str, list[int]] = {}
+    for place, name in zip(supply.places, supply.feeds):
+        rows.setdefault(place, []).append(run.index(name))
+    found = []
+    for place, own in rows.items():
+        slope = 0.0
+        for row in own:
+            slope += largest_flow_slope(plants[row].valve, supply.span)
+        found.append(Fed(place, slope, tuple(own)))
+    return tuple(found)
 
 
 def surroundings_in_form(run: RunConfig) -> Surroundings:

@@ -206,7 +206,8 @@ def _value(value: Any) -> str:
 def _range(declared: Any) -> str:
     if 'names' in declared:
         return ' | '.join(declared['names'])
-    return ', '.join(f'{_SYMBOLS[name]} {bound:g}' for name, bound in declared['bounds'].items())
+    return ', '.join(f'{_SYMBOLS[name]} {bound:g}'
+                     for name, bound in declared.get('bounds', {}).items())
 
 
 def _table(title: str, body: list[ListedValue]) -> str:

@@ -1,7 +1,9 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields, make_dataclass, replace
+from functools import cache
+from keyword import iskeyword
 import math
 from typing import Any, TypeVar
 
@@ -93,6 +95,19 @@ def choice(
     return field(metadata=metadata)
 
 
+def name(doc: str, *, absent: str | None = None, source: str = '') -> Any:
+    """Declare the name of another part of the same machine; `absent` as in `parameter`."""
+    metadata: dict[str, Any] = {'doc': doc, 'unit': '', 'is_name': True, 'source': source}
+    if absent is None:
+        return field(metadata=metadata)
+    return field(default=absent, metadata={**metadata, 'absent': absent})
+
+
+def named_sets(union: Any) -> Any:
+    """Declare a set of sets by names of the user, each one of a union; see `set_by_name`."""
+    return field(metadata={'named': union})
+
+
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
     """
@@ -116,6 +131,29 @@ class Parameters:
 
 
 _P = TypeVar('_P', bound=Parameters)
+
+
+def set_by_name(named: Mapping[str, Parameters], union: Any) -> Parameters:
+    """
+    Return a set with one nested set a name, each of a class of ``union``.
+
+    Raises
+    ------
+    ConfigError
+        A name is a word of Python.
+
+    """
+    for given in named:
+        if iskeyword(given):
+            raise ConfigError(f'{given!r} is a word of Python, must be another name')
+    return _named_class(tuple(named), union)(**named)
+
+
+@cache
+def _named_class(names: tuple[str, ...], union: Any) -> type[Parameters]:
+    """Return the class with these fields; the same one for the same names, so that they equal."""
+    return make_dataclass('NamedSets', [(given, union) for given in names], bases=(Parameters,),
+                          frozen=True, kw_only=True)
 
 
 def defaults(cls: type[_P]) -> _P:
@@ -182,6 +220,10 @@ def check(where: str, value: Any, declared: Any) -> None:
         if value not in declared['names']:
             raise ParameterError(
                 f'{where} = {value!r}, must be one of {", ".join(declared["names"])}')
+        return
+    if 'is_name' in declared:
+        if not isinstance(value, str):
+            raise ParameterError(f'{where} = {value!r}, must be a name ({declared["doc"]})')
         return
     unit = declared['unit']
     if 'length' in declared:

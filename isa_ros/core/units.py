@@ -34,7 +34,8 @@ NOT_SI = {
     'mm/s/mA': Unit('m/s/A', MILLI, MILLI), 'mA/MPa': Unit('A/Pa', MILLI, MPA),
     'uA/K': Unit('A/K', MICRO), 'V/mA': Unit('V/A', 1.0, MILLI),
     'V/(mA s)': Unit('V/(A s)', 1.0, MILLI), 'V s/mA': Unit('V s/A', 1.0, MILLI),
-    '%': Unit('1', 1.0, 100.0), 'MB': Unit('B', MPA), 'Mbit/s': Unit('bit/s', MPA)}
+    '%': Unit('1', 1.0, 100.0), 'rpm': Unit('Hz', 1.0, 60.0),
+    'MB': Unit('B', MPA), 'Mbit/s': Unit('bit/s', MPA)}
 """All units of data sheets that are not SI. Hz is; rad/s is 2 pi of it, by the equation."""
 _SI = frozenset((
     '1', '1/K', '1/s', '1/s2', 'A', 'A/s', 'H', 'Hz', 'J', 'J/(kg K)', 'J/K', 'K', 'K/s', 'N',

@@ -6,7 +6,6 @@ from typing import NamedTuple, Protocol
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Messages, Names, Packer
-from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
 
@@ -150,8 +149,8 @@ def packer_of(run: RunConfig, rows: PublishedRows) -> Packer:
     """Return the packer of the rows of a run; encoding its messages takes about a millisecond."""
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
-              [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies],
+              [(own.name, len(own.published) > 1 if own.published else None)
+               for own in run.sampled_supplies],
               {body.name: body.messages(run.step_ns) for body in run.bodies},
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
               run.linked), rows, start_ns=run.start_ns)

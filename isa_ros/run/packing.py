@@ -44,8 +44,8 @@ class Names(NamedTuple):
 
     actuators: Sequence[tuple[str, bool]]
     """(name, is_rotary) of each."""
-    supplies: Sequence[tuple[str, bool]] = ()
-    """(name, publishes its return pressure) of each."""
+    supplies: Sequence[tuple[str, bool | None]] = ()
+    """(name, publishes its return pressure) of each row; None: it publishes no pressure."""
     bodies: Mapping[str, Sequence[BodyMessage]] = {}
     """What is published of each body's sample."""
     heated: Collection[str] = ()
@@ -129,7 +129,8 @@ class Packer:
                       for topic in topics_of_actuator(
                           f'/{name}', name in names.heated, row in self._links.rows)]
         for supply, shows_return in names.supplies:
-            for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
+            for k, suffix in enumerate(
+                    () if shows_return is None else _SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(coordinator_messages.supply_topic(supply, suffix), PRESSURE_TYPE)
                 found.append((topic, fluid_pressure(
                     coordinator_messages.WORLD_FRAME, at + k)))

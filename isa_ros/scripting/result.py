@@ -67,7 +67,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
                 yield f'{actuator.name}.{field}', unit
                 if actuator.name in self.scenario.run.linked:
                     yield f'{actuator.name}.{LINK}.{field}', unit
-        for supply in self.scenario.run.supplies:
+        for supply in self.scenario.run.sampled_supplies:
             for field, unit in units_of(SUPPLY_FIELDS).items():
                 yield f'{supply.name}.{field}', unit
         for name, units in body_units.items():
@@ -79,7 +79,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
         run, log = self.scenario.run, self.log
         sources = [*((actuator.name, log.samples[:, k]) for k, actuator in
                      enumerate(run.actuators)),
-                   *((supply.name, log.supplies[:, k]) for k, supply in enumerate(run.supplies))]
+                   *((supply.name, log.supplies[:, k])
+                     for k, supply in enumerate(run.sampled_supplies))]
         if log.observed is not None:
             sources += [(f'{name}.{LINK}', log.observed[:, run.index(name)])
                         for name in run.linked]
@@ -117,7 +118,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         run, log = self.scenario.run, self.log
         return accounts_of(
             [actuator.name for actuator in run.actuators], log.samples[-1],
-            [supply.name for supply in run.supplies], log.supplies[-1],
+            [supply.name for supply in run.sampled_supplies], log.supplies[-1],
             (len(log.samples) - 1) * run.step_ns)
 
     @cached_property

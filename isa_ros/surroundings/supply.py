@@ -21,6 +21,7 @@ from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.accumulator import (
     AccumulatorSupply, capacitance, supply_advance, supply_record)
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.dump import DUMP, dump_fields, LagDump, NoneDump, opened_after
 from isa_ros.surroundings.return_line import (
     HeldReturn, return_advance, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
@@ -41,7 +42,15 @@ class ConstantSupply(Parameters):
     dump: NoneDump | LagDump = nested(NoneDump())
 
 
-SupplySheet = ConstantSupply | AccumulatorSupply
+SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply
+
+
+def is_dumped(sheet: SupplySheet) -> bool:
+    """Return whether the emergency stop acts on a supply."""
+    if isinstance(sheet, CircuitSupply):
+        return sheet.is_switched
+    return not isinstance(sheet.dump, NoneDump)
+
 
 SUPPLY_FIELDS = (
     Field('pressure', 'Pa', 'gauge'),

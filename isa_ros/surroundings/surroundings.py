@@ -7,7 +7,7 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
@@ -16,6 +16,8 @@ from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
+from isa_ros.surroundings.circuits.circuit import Circuit, Fed
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
@@ -51,6 +53,8 @@ class SupplyCircuit(NamedTuple):
     """Rows of the fed actuators."""
     flow_slope: float
     """Sum of their valves' largest dQ/dP, m3/s/Pa."""
+    fed: Sequence[Fed] = ()
+    """Of a circuit its manifolds that feed them."""
 
 
 class Surroundings:
@@ -68,11 +72,18 @@ class Surroundings:
         self.circuits = tuple(circuits)
         self.bodies = dict(bodies)
         """By name, in the order of the run."""
-        self.supplies: Records = np.zeros(len(circuits), SUPPLY_SAMPLE)
-        """`SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten."""
+        ends = np.cumsum([0, *(_n_samples(own.sheet) for own in circuits)])
+        self.supplies: Records = np.zeros(ends[-1], SUPPLY_SAMPLE)
+        """
+        `SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten.
+
+        A circuit has one more for each of its parts.
+        """
         self._supplies = [
-            Supply(own.sheet, step_ns, own.flow_slope, self.supplies[k:k + 1], own.name)
-            for k, own in enumerate(circuits)]
+            _made(own, step_ns, self.supplies[first:last])
+            for own, first, last in zip(circuits, ends, ends[1:])]
+        self._owners = [own.name for own in circuits for _ in range(_n_samples(own.sheet))]
+        self._circuits = [own for own in self._supplies if isinstance(own, Circuit)]
         self.changing: Mapping[str, Changeable] = {
             name: own for circuit in circuits
             for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
@@ -122,6 +133,9 @@ class Surroundings:
 
     def _fill_pressures(self, rows: Records) -> None:
         for supply, fed in zip(self._supplies, self._fed):
+            if isinstance(supply, Circuit):
+                supply.fill(rows)
+                continue
             rows['supply_pressure'][fed] = supply.pressure
             rows['return_pressure'][fed] = supply.return_pressure
 
@@ -163,7 +177,7 @@ class Surroundings:
         """Return the values of `changing` that changed at the start of the last tick."""
         return self._values.applied
 
-    def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply, SupplySheet]]:
+    def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply | Circuit, Any]]:
         for supply, circuit in zip(self._supplies, self.circuits):
             yield supply, _changed(circuit.sheet, circuit.name, values)
 
@@ -194,7 +208,11 @@ class Surroundings:
             body.advance(replies)
         drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
         for supply, circuit in zip(self._supplies, self.circuits):
-            supply.advance(_sum(drawn, circuit.rows), _sum(returned, circuit.rows))
+            if isinstance(supply, Circuit):
+                supply.advance_held([_sum(drawn, own.rows) for own in circuit.fed],
+                                    [_sum(returned, own.rows) for own in circuit.fed])
+            else:
+                supply.advance(_sum(drawn, circuit.rows), _sum(returned, circuit.rows))
 
     def snapshot(self) -> bytes:
         """
@@ -208,12 +226,12 @@ class Surroundings:
             A number in the state of a body is not finite.
 
         """
-        for k, circuit in enumerate(self.circuits):
+        for k, name in enumerate(self._owners):
             broken = broken_number(self.supplies[k:k + 1])
             if broken is not None:
-                raise RunError(
-                    f'{circuit.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
+                raise RunError(f'{name}: {broken[0]} = {broken[1]}, must be finite to be saved')
         return b''.join([self.supplies.tobytes(), self._values.snapshot(),
+                         *(circuit.snapshot() for circuit in self._circuits),
                          *(body.snapshot() for body in self.bodies.values())])
 
     def restore(self, snapshot: bytes) -> None:
@@ -228,7 +246,8 @@ class Surroundings:
         """
         supplies_end = self.supplies.nbytes
         values_end = supplies_end + self._values.nbytes
-        sizes, end = [], values_end
+        circuits_end = values_end + sum(own.state.nbytes for own in self._circuits)
+        sizes, end = [], circuits_end
         for body in self.bodies.values():
             sizes.append(body.saved_size(snapshot[end:]) if isinstance(body, SizedBody)
                          else len(body.snapshot()))
@@ -237,13 +256,20 @@ class Surroundings:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {end}')
         supplies = np.concatenate([
-            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, circuit.name)
-            for k, circuit in enumerate(self.circuits)])
+            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, name)
+            for k, name in enumerate(self._owners)])
+        of_circuits, at = [], values_end
+        for own in self._circuits:
+            of_circuits.append(snapshot[at:at + own.state.nbytes])
+            own.refuse_snapshot(of_circuits[-1])
+            at += own.state.nbytes
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()
         self.supplies[:] = supplies
-        at = values_end
+        for own, state in zip(self._circuits, of_circuits):
+            own.restore(state)
+        at = circuits_end
         for body, size in zip(self.bodies.values(), sizes):
             body.restore(snapshot[at:at + size])
             at += size
@@ -253,6 +279,18 @@ class Surroundings:
         _, beneath = self._values.with_accepted({})
         self.restore(beginning)
         self._values.accept(beneath)
+
+
+def _n_samples(sheet: SupplySheet) -> int:
+    """Return the number of samples of a supply: its own, of a circuit also those of its parts."""
+    return 1 + len(sheet.by_name) if isinstance(sheet, CircuitSupply) else 1
+
+
+def _made(own: SupplyCircuit, step_ns: int, samples: Records) -> Supply | Circuit:
+    """Return a supply or circuit over a run, whose samples are these rows."""
+    if isinstance(own.sheet, CircuitSupply):
+        return Circuit(own.sheet, step_ns, own.fed, samples, own.name)
+    return Supply(own.sheet, step_ns, own.flow_slope, samples, own.name)
 
 
 def _changed(sheet: _P, owner: str, values: Mapping[str, float]) -> _P:

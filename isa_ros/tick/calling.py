@@ -86,4 +86,4 @@ def calling(run: RunConfig, transport: Transport) -> Transport:
         return transport
     return CallingTransport(
         transport, [own.made(run) for own in run.called], [own.name for own in run.actuators],
-        [own.name for own in run.supplies], run.step_ns)
+        [own.name for own in run.sampled_supplies], run.step_ns)

@@ -21,7 +21,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.reu.protection_sheet import changed_reactions, reaction_of
-from isa_ros.surroundings.dump import NoneDump
+from isa_ros.surroundings.supply import is_dumped
 from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
 import numpy as np
 
@@ -219,7 +219,7 @@ def emergency_stops_of(run: RunConfig, surroundings: Surroundings) -> EmergencyS
                 for row, sheet in sheets.items()},
             group.reactions, [] if group.dumps == NEVER else [
                 supply.name for supply in run.supplies
-                if not isinstance(supply.sheet.dump, NoneDump)
+                if is_dumped(supply.sheet)
                 and set(supply.feeds) & set(group.actuators)],
             group.dumps == AT_REST))
     return EmergencyStops(

@@ -15,6 +15,8 @@ from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import kind_of
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load, Run
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
+from isa_ros.surroundings.supply import SupplySheet
 
 SUPPLY_PRESSURE = 'supply.pressure_mpa'
 LOAD = 'load.'
@@ -62,9 +64,13 @@ class Actuators:
         found = self.changed(found)
         if not self.change.is_of_supply:
             return found
-        supplies = tuple(replace(supply, sheet=replace(
-            supply.sheet, pressure_mpa=self.change.factor * supply.sheet.pressure_mpa))
-            for supply in found.run.supplies)
+        factor = self.change.factor
+
+        def changed(sheet: SupplySheet) -> SupplySheet:
+            assert not isinstance(sheet, CircuitSupply)     # no bench has one
+            return replace(sheet, pressure_mpa=factor * sheet.pressure_mpa)
+        supplies = tuple(replace(supply, sheet=changed(supply.sheet))
+                         for supply in found.run.supplies)
         return replace(found, run=replace(found.run, supplies=supplies))
 
     def changed(self, bench: Rig) -> Rig:

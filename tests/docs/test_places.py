@@ -200,7 +200,7 @@ class FallingSupply(Parameters):
     dump: NoneDump = nested(NoneDump())
 
 
-SupplySheet = ConstantSupply | AccumulatorSupply | FallingSupply
+SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply | FallingSupply
 '''
 _FALLS = """
 import isa_ros
@@ -217,7 +217,8 @@ print(f"{result['supply.pressure'][0] * 1e-6:.3f} {result['supply.pressure'][-1]
 def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
     """Its kind is in run files, resolved texts and lists, and its pressure at the valves."""
     path = 'isa_ros/surroundings/supply.py'
-    copied.replace(path, 'SupplySheet = ConstantSupply | AccumulatorSupply\n', _FALLING)
+    copied.replace(
+        path, 'SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply\n', _FALLING)
     copied.replace(
         path, '        self._record, self._line = self._records(sheet)\n\n    def change',
         '        self._record, self._line = self._records(sheet)\n'

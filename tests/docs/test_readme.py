@@ -86,8 +86,10 @@ def test_its_supplies_are_of_every_kind(tmp_path: Path) -> None:
     simulation = Simulation(idle(run))
     for _ in range(10):
         simulation.step()
-    front, rear = (simulation.supply_samples[supply.name].pressure for supply in run.supplies)
+    front, rear, station = (
+        simulation.supply_samples[supply.name].pressure for supply in run.supplies)
     assert front == 20.7e6 > rear > 20e6
+    assert 20e6 < station < 20.7e6
 
 
 def test_the_refusal_it_shows_is_that_of_the_file() -> None:

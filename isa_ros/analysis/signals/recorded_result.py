@@ -82,7 +82,7 @@ def _empty(run: RunConfig, n: int) -> Log:
         rows.view(np.float64)[:] = np.nan
         return rows
     return Log(
-        of(SAMPLE, len(run.actuators)), of(SUPPLY_SAMPLE, len(run.supplies)),
+        of(SAMPLE, len(run.actuators)), of(SUPPLY_SAMPLE, len(run.sampled_supplies)),
         {body.name: of(record_type(body.fields)) for body in run.bodies}, {})
 
 
@@ -90,7 +90,7 @@ def _fill(log: Log, signals: Signals) -> None:
     """Write the signals of a bag into its log, at the ticks that they were recorded at."""
     run = signals.run
     rows = {own.name: log.samples[:, k] for k, own in enumerate(run.actuators)}
-    rows |= {own.name: log.supplies[:, k] for k, own in enumerate(run.supplies)}
+    rows |= {own.name: log.supplies[:, k] for k, own in enumerate(run.sampled_supplies)}
     rows |= log.bodies
     for name in signals:
         source, _, field = name.partition('.')
@@ -111,7 +111,7 @@ def _messages(bag: Bag, run: RunConfig, log: Log) -> Iterator[tuple[int, int, np
     """Yield sample, row and `COMMAND` of applied setpoints; write accounts into the log."""
     topics = {f'/{own.name}/{APPLIED_SETPOINT[0]}': k for k, own in enumerate(run.actuators)}
     names = [own.name for own in run.actuators]
-    supplies = [own.name for own in run.supplies]
+    supplies = [own.name for own in run.sampled_supplies]
     for message in bag.messages():
         tick, topic = message.sequence, message.topic
         try:

@@ -83,8 +83,8 @@ class Signals(Mapping[str, Values]):
 
     def supply_pressure(self, actuator: str) -> Signal:
         """Return the pressure of the supply that feeds an actuator; as `over_time`."""
-        supply = next(own.name for own in self.run.supplies if actuator in own.feeds)
-        return self.over_time(f'{supply}.pressure')
+        supply = next(own for own in self.run.supplies if actuator in own.feeds)
+        return self.over_time(f'{supply.sampled_at(actuator)}.pressure')
 
     def unit(self, name: str) -> str:
         """Return the unit of a signal."""
@@ -92,7 +92,7 @@ class Signals(Mapping[str, Values]):
         body = self.run.body(source)
         if body is not None:
             return units_of(body.fields)[field]
-        if any(supply.name == source for supply in self.run.supplies):
+        if any(own.name == source for own in self.run.sampled_supplies):
             return units_of(SUPPLY_FIELDS)[field]
         return units_of(SAMPLE_FIELDS, self.run.actuator(source).sheet.is_rotary)[field]
 
@@ -144,7 +144,7 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
             trace = traces.get(f'/{actuator.name}/{suffix}')
             if trace is not None and trace.has([path]):
                 yield f'{actuator.name}.{name}', _signal(trace, path)
-    for supply in run.supplies:
+    for supply in run.sampled_supplies:
         for name in _SUPPLY:
             trace = traces.get(supply_topic(supply.name, name))
             if trace is not None:

@@ -227,8 +227,23 @@ def _add(section: Sections, others: Sections, place: Place) -> None:
 def _feed(supplies: Sections, parts: Mapping[str, Sections], place: Place) -> None:
     """Add the supplies of the robots, for the actuators that none of the run file feeds."""
     fed = {name for key, own in supplies.items()
-           for name in names_at(section_at(own, place / key).get('feeds', []), place / key)}
+           for name in _names(section_at(own, place / key).get('feeds', []), place / key)}
     for part in parts.values():
         for name, own in part['supplies'].items():
-            if feeds := [actuator for actuator in own['feeds'] if actuator not in fed]:
+            if feeds := _without(own['feeds'], fed):
                 _add(supplies, {name: {**own, 'feeds': feeds}}, place)
+
+
+def _names(feeds: Any, place: Place) -> list[str]:
+    """Return the actuators that a supply of a file feeds, in a list or in lists by manifold."""
+    if isinstance(feeds, dict):
+        return [name for key, own in feeds.items() for name in names_at(own, place / key)]
+    return names_at(feeds, place)
+
+
+def _without(feeds: Any, fed: set[str]) -> Any:
+    """Return them without those that are fed; empty if that is all."""
+    if isinstance(feeds, dict):
+        left = {key: _without(own, fed) for key, own in feeds.items()}
+        return {key: own for key, own in left.items() if own}
+    return [name for name in feeds if name not in fed]

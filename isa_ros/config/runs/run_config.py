@@ -20,7 +20,7 @@ from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.one_robot import one_robot
 from isa_ros.config.runs.recording import RECORD, RecordConfig
-from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
+from isa_ros.config.runs.supplies import Sampled, supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
 from isa_ros.config.text.key_tables import KeyTable, Named, OneOf
 from isa_ros.config.text.keys import (
@@ -111,9 +111,15 @@ class RunConfig:
         fed = self.actuator(name).name
         return next(own.sheet for own in self.supplies if fed in own.feeds)
 
+    @property
+    def sampled_supplies(self) -> tuple[Sampled, ...]:
+        """Return the rows of the samples of all supplies, in their order."""
+        return tuple(row for own in self.supplies for row in own.sampled)
+
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
-        supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))
+        fed = next(own for own in self.supplies if actuator.name in own.feeds)
+        supply = replace(fed.feeding([actuator.name]), name=SUPPLY)
         return replace(
             self, actuators=(actuator,), supplies=(supply,), bodies=(), emergency_stops=())
 

@@ -1,21 +1,32 @@
 """Supplies of a run file: ``supply`` for all actuators, or ``supplies`` by name."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 from isa_ros.config.text.key_tables import KeyTable
-from isa_ros.config.text.keys import Key, NAMES, ParameterSet
-from isa_ros.config.text.sections import Place
+from isa_ros.config.text.keys import Key, ParameterSet, Value
+from isa_ros.config.text.sections import names_at, Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.circuits.manifold import ManifoldPart
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.surroundings.surroundings import EMERGENCY_STOP
 
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""
+_PUBLISHED = ('pressure', 'return_pressure')
+
+
+class Sampled(NamedTuple):
+    """One row of samples: of a supply, or of a part of a circuit."""
+
+    name: str
+    published: tuple[str, ...] = ()
+    """Signals that have a topic at every tick."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +36,40 @@ class SupplyConfig:
     name: str
     sheet: SupplySheet
     feeds: tuple[str, ...]
+    places: tuple[str, ...] = ()
+    """Of a circuit the manifold that feeds each of them."""
+
+    @property
+    def sampled(self) -> tuple[Sampled, ...]:
+        """Return the rows of its samples: its own, and of a circuit one for each part."""
+        has_return = isinstance(self.sheet.return_line, VolumeReturn)
+        own = Sampled(self.name, _PUBLISHED[:1 + has_return])
+        if not isinstance(self.sheet, CircuitSupply):
+            return (own,)
+        return (own, *(Sampled(f'{self.name}/{part}', _PUBLISHED[:isinstance(sheet, ManifoldPart)])
+                       for part, sheet in self.sheet.by_name.items()))
+
+    def sampled_at(self, actuator: str) -> str:
+        """Return the name of the row of samples with the pressure of an actuator it feeds."""
+        if not self.places:
+            return self.name
+        return f'{self.name}/{self.places[self.feeds.index(actuator)]}'
+
+    @property
+    def feeds_written(self) -> list[str] | dict[str, list[str]]:
+        """Return the actuators it feeds as a file has them: of a circuit by manifold."""
+        if not self.places:
+            return list(self.feeds)
+        found: dict[str, list[str]] = {}
+        for place, name in zip(self.places, self.feeds):
+            found.setdefault(place, []).append(name)
+        return found
+
+    def feeding(self, actuators: Sequence[str]) -> 'SupplyConfig':
+        """Return it for some of the actuators that it feeds."""
+        kept = [k for k, name in enumerate(self.feeds) if name in actuators]
+        return replace(self, feeds=tuple(self.feeds[k] for k in kept),
+                       places=tuple(self.places[k] for k in kept if self.places))
 
     @property
     def span(self) -> float:
@@ -32,9 +77,40 @@ class SupplyConfig:
         return (self.sheet.pressure_mpa - self.sheet.return_pressure_mpa) * MPA
 
 
-SUPPLY_KEYS = KeyTable(
-    (Key('feeds', NAMES, 'the names of the actuators it feeds'),),
-    rest=Key('sheet', ParameterSet(SupplySheet), 'the supply'))
+def _fed(value: Any, place: Place) -> Any:
+    if isinstance(value, dict):
+        return {name: tuple(names_at(own, place / name)) for name, own in value.items()}
+    return tuple(names_at(value, place))
+
+
+FEEDS = Key(
+    'feeds', Value('list of names, or lists by manifold', _fed),
+    'the names of the actuators it feeds; of a circuit by manifold',
+    of=lambda supply: supply.feeds_written)
+SUPPLY_KEYS = KeyTable((FEEDS,), rest=Key('sheet', ParameterSet(SupplySheet), 'the supply'))
+
+
+def _supply(name: str, sheet: SupplySheet, feeds: Any, place: Place) -> SupplyConfig:
+    """Return a supply with what it feeds, as a file has it; as `supplies_of`."""
+    if not isinstance(sheet, CircuitSupply):
+        if isinstance(feeds, dict):
+            raise ConfigError(f'{place} has manifolds, must be a list of names: only a circuit '
+                              'has manifolds')
+        return SupplyConfig(name, sheet, feeds)
+    manifolds = [part for part, own in sheet.by_name.items() if isinstance(own, ManifoldPart)]
+    if not isinstance(feeds, dict):
+        if len(manifolds) > 1:
+            raise ConfigError(
+                f'{place}: the circuit has {len(manifolds)} manifolds, must be lists by manifold, '
+                f'of {", ".join(manifolds)}')
+        feeds = {manifolds[0]: feeds} if manifolds else {}
+    for manifold in feeds:
+        if manifold not in manifolds:
+            raise ConfigError(
+                f'{place / manifold} is not a manifold; {alternatives(manifold, manifolds)}')
+    pairs = [(place_, own) for place_, names in feeds.items() for own in names]
+    return SupplyConfig(name, sheet, tuple(own for _, own in pairs),
+                        tuple(place_ for place_, _ in pairs))
 
 
 def supplies_of(
@@ -50,10 +126,12 @@ def supplies_of(
 
     """
     if values[SUPPLY] is not None:
-        return (SupplyConfig(SUPPLY, values[SUPPLY], tuple(actuators)),)
+        return (_supply(SUPPLY, values[SUPPLY], tuple(actuators), place / SUPPLY / 'feeds'),)
     if values['supplies'] is None:
         raise ConfigError(place.has(f'lacks {SUPPLY}'))
-    supplies = tuple(SupplyConfig(name, **own) for name, own in values['supplies'].items())
+    supplies = tuple(
+        _supply(name, own['sheet'], own['feeds'], place / 'supplies' / name / 'feeds')
+        for name, own in values['supplies'].items())
     refuse_misfed(supplies, actuators, place / 'supplies')
     return supplies
 
@@ -70,7 +148,9 @@ def refuse_misfed(
         of another one's return pressure.
 
     """
-    names = {supply.name for supply in supplies}
+    names = {own.name for supply in supplies for own in supply.sampled}
+    if len(names) < sum(len(supply.sampled) for supply in supplies):
+        raise ConfigError(f'{place}: a part of a circuit has the name of another supply')
     for supply in supplies:
         if supply.name == EMERGENCY_STOP:
             raise ConfigError(f'{place / EMERGENCY_STOP}: the name is taken by the lines of '

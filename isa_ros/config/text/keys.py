@@ -144,6 +144,17 @@ class ParameterSet(ValueKind):
         return KeyDifference(f'{place / "kind"} is missing in the bag', True)
 
 
+@dataclass(frozen=True)
+class NamedSets(ParameterSet):
+    """Parameter sets by name, each one of a union."""
+
+    words = 'sections by name'
+
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return a row for each section."""
+        return {name: Key(name, ParameterSet(self.hint), '') for name in tree}
+
+
 class Layer(ParameterSet):
     """Values of a parameter set that replace those of a model, each with its place."""
 
@@ -163,7 +174,8 @@ def parameter_rows(cls: type[Parameters]) -> dict[str, 'Key']:
     """Return the rows of the fields of a parameter set by name."""
     hints = get_type_hints(cls)
     return {f.name: Key(
-        f.name, ANY_NAME if 'doc' in f.metadata else ParameterSet(hints[f.name]),
+        f.name, ANY_NAME if 'doc' in f.metadata else NamedSets(f.metadata['named'])
+        if 'named' in f.metadata else ParameterSet(hints[f.name]),
         f.metadata.get('doc', ''), _default(f.metadata, hints[f.name])) for f in fields(cls)}
 
 

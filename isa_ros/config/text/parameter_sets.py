@@ -10,9 +10,10 @@ from functools import cache
 import re
 from typing import Any, get_args, get_type_hints, TypeVar
 
+from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import KIND_KEYS, Place, Section, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.parameter import check, Parameters, set_by_name
 from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.units import after, of_coordinate
 from isa_ros.errors import ConfigError, ParameterError
@@ -55,12 +56,28 @@ def build(
             values[f.name] = _checked(entry, of_axis(f.metadata, is_rotary), place / f.name)
         elif isinstance(entry, SourcedValue):
             raise ConfigError(f'{entry.where} = {entry.value!r}, must be a section')
+        elif 'named' in f.metadata:
+            values[f.name] = _by_name(f.metadata['named'], entry, place / f.name)
         else:
             values[f.name] = build_one_of(hints[f.name], entry, place / f.name, is_rotary)
     try:
         return cls(**values)
     except ParameterError as error:
         raise ParameterError(f'{_last_written(section, place)}: {error}') from error
+
+
+def _by_name(union: Any, section: Section, place: Place) -> Any:
+    """Return the sets of a section with names of the user; as `build`."""
+    named = {}
+    for name, below in section.items():
+        refuse_bad_name(name, f'{place / name}: the name')
+        if isinstance(below, SourcedValue):
+            raise ConfigError(f'{below.where} = {below.value!r}, must be a section')
+        named[name] = build_one_of(union, below, place / name)
+    try:
+        return set_by_name(named, union)
+    except ConfigError as error:
+        raise ConfigError(f'{place}: {error}') from error
 
 
 def _last_written(section: Section, place: Place) -> Place:
@@ -134,7 +151,7 @@ def _checked(entry: SourcedValue | Section, declared: Mapping[str, Any], place: 
         raise ParameterError(
             f'{place} is a section, must be one value{after(" in ", declared.get("unit", ""))}')
     check(entry.where, entry.value, declared)
-    if 'names' in declared:
+    if 'names' in declared or 'is_name' in declared:
         return entry.value
     if isinstance(entry.value, list):
         return tuple(float(one) for one in entry.value)

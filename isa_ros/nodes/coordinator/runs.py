@@ -125,7 +125,8 @@ def _participants(
                 for actuator in warmed_up(run)]
     expected += [Expected(name, '') for name in run.controllers]
     bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
-    roster = Roster([own.name for own in expected], [own.name for own in run.supplies], bodies)
+    roster = Roster([own.name for own in expected],
+                    [own.name for own in run.sampled_supplies], bodies)
     return Participants(
         expected, roster, surroundings.starts(), run.step_ns,
         first_remote=len(run.actuators) if are_here else 0)

@@ -1,0 +1,272 @@
+"""
+A circuit over a run, with a port at each manifold that feeds actuators.
+
+Actuators use both pressures of the tick's start, or move them in their own tick by what their
+manifold is said to be (`isa_ros.surroundings.supply_port`); the circuit then advances over the
+same interval with the mean flows. At t = 0 pressure lines are at the least of what pumps, relief
+and unloading valves hold, the return side is at the tank's pressure. Equation E12.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from isa_ros.core.units import MPA
+from isa_ros.errors import ConfigError, ParameterError, RunError
+from isa_ros.surroundings.circuits.network import (
+    circuit_advance, circuit_rates, OF_ORIFICE, PER_ELEMENT, PER_NODE)
+from isa_ros.surroundings.circuits.nodes import (
+    node_capacity, node_content, node_energy, node_pressure)
+from isa_ros.surroundings.circuits.orifice import UnloadingPart
+from isa_ros.surroundings.circuits.plan import Network, network_of, OUTSIDE
+from isa_ros.surroundings.circuits.relief import ReliefPart
+from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
+from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
+from isa_ros.surroundings.circuits.stiffness import steps_of
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_port import FedNode
+import numpy as np
+from numpy.typing import NDArray
+
+_SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
+
+
+class Fed(NamedTuple):
+    """One manifold that feeds actuators."""
+
+    place: str
+    flow_slope: float
+    """Sum of their valves' largest dQ/dP, m3/s/Pa."""
+    rows: tuple[int, ...] = ()
+    """Rows of the fed actuators."""
+
+
+class Circuit:
+    """
+    One circuit over a run; ``name`` is used in errors.
+
+    ``samples`` are the rows of the whole and of its parts, `SUPPLY_SAMPLE`, (n_rows,); None: new
+    rows are made.
+
+    Raises
+    ------
+    ParameterError
+        The circuit cannot be integrated, or a manifold is too small to hold its pressure over
+        one tick.
+
+    """
+
+    def __init__(
+            self, sheet: CircuitSupply, step_ns: int, fed: Sequence[Fed],
+            samples: np.ndarray | None = None, name: str = 'supply') -> None:
+        self._name, self._fed, self._step = name, tuple(fed), step_ns * 1e-9
+        network = network_of(sheet)
+        self._nodes = [network.node(own.place) for own in fed]
+        self._returns = [network.node(sheet.return_of(own.place)) for own in fed]
+        self._first = rows_of_circuit(sheet, network)
+        self.samples = np.zeros(len(self._first), SUPPLY_SAMPLE) if samples is None else samples
+        self._shown = self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE)))
+        places = list(sheet.by_name)
+        self._rows = [1 + places.index(own.place) for own in fed]
+        self.state: NDArray[np.float64] = _at_rest(sheet, network)
+        self._network, self._steps = network, 0
+        self._work = np.zeros((5, len(self.state)))
+        self._rates = np.zeros(len(self.state))
+        self._held = np.zeros(len(network.nodes))
+        self._none = np.zeros(len(network.nodes))
+        self._stored = np.zeros(len(self._first))
+        self._is_return = _of_return(sheet, network)
+        self._take(sheet)
+        self._show()
+        self._stored[:] = self.samples['stored_energy']
+        self._show()
+
+    def _take(self, sheet: CircuitSupply) -> None:
+        network, self._steps = self._checked(sheet)
+        self._network = network
+        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+
+    def _all_nodes(self) -> list[tuple[float, float, np.record]]:
+        """Return content, temperature and record of every node."""
+        n = len(self._network.nodes)
+        return [(float(self.state[k]), float(self.state[n + k]), self._network.nodes[k])
+                for k in range(n)]
+
+    def _checked(self, sheet: CircuitSupply) -> tuple[Network, int]:
+        network = network_of(sheet)
+        steps = steps_of(sheet, network, self._step, self._name)
+        for own, node in zip(self._fed, self._nodes):
+            self._refuse_small(own, network.nodes[node])
+        return network, steps
+
+    def _refuse_small(self, fed: Fed, node: np.record) -> None:
+        """Refuse a manifold that does not hold its pressure over a tick, at its precharge."""
+        theta = float(node.gas.theta_a)
+        p_gas = node.gas.amount * theta / node.gas.v_0 if node.gas.v_0 > 0.0 else 0.0
+        c = float(node_capacity(1.01 * p_gas, theta, node))
+        holds, bound = c / fed.flow_slope, _SLOWEST_TICKS * self._step
+        if holds < bound:
+            raise ParameterError(
+                f'{self._name}: parts.{fed.place}: capacity over flow slope of its actuators = '
+                f'{holds * 1e3:.3g} ms, must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge its '
+                'oil_volume_l')
+
+    def refuse(self, sheet: CircuitSupply) -> None:
+        """Refuse a sheet with which `change` cannot continue; raises as the class."""
+        self._checked(sheet)
+
+    def change(self, sheet: CircuitSupply) -> None:
+        """
+        Continue with other values of the sheet: pressures, flows and openings keep theirs.
+
+        What an accumulator no longer holds, or holds more, counts as leaked, with its energy.
+        Raises as the class.
+        """
+        before = [(node_energy(*own), node_pressure(*own)) for own in self._all_nodes()]
+        self._take(sheet)
+        n = len(self._network.nodes)
+        for k, (energy, pressure) in enumerate(before):
+            node = self._network.nodes[k]
+            if node.is_held or not node.gas.v_0:
+                continue
+            content = float(node_content(pressure, self.state[n + k], node))
+            self.state[OUTSIDE] += self.state[k] - content
+            self.state[k] = content
+            self.state[3 * n + k] += node_energy(content, self.state[n + k], node) - energy
+        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        self._show()
+
+    def fill(self, rows: np.ndarray) -> None:
+        """Fill both pressures of the fed actuators, of all rows of a run, for the next tick."""
+        for own, node, back in zip(self._fed, self._nodes, self._returns):
+            for row in own.rows:
+                rows['supply_pressure'][row] = self._held[node]
+                rows['return_pressure'][row] = self._held[back]
+
+    @property
+    def pressures(self) -> list[tuple[float, float]]:
+        """Return supply and return pressure of each manifold that feeds, for the next tick."""
+        return [(float(self._held[node]), float(self._held[back]))
+                for node, back in zip(self._nodes, self._returns)]
+
+    def nodes(self) -> list[FedNode]:
+        """Return the manifolds that feed actuators at the start of the next tick."""
+        network, n = self._network, len(self._network.nodes)
+        return [FedNode(
+            float(self._held[k]),
+            float(node_capacity(self._held[k], self.state[n + k], network.nodes[k])),
+            float(self._rates[k]),
+            float(inflow_slope(k, self.state, self._held, network.elements)),
+            float(inflow_trend(k, self.state, self._rates, self._held, network.nodes,
+                               network.elements))) for k in self._nodes]
+
+    def advance_nodes(
+            self, drawn: Sequence[float], paid: Sequence[float],
+            returned: Sequence[float]) -> None:
+        """Advance by one tick; as `PortedSupply.advance_nodes`."""
+        flows = self._none.copy()
+        for node, back, volume, given in zip(self._nodes, self._returns, drawn, returned):
+            flows[node] += volume / self._step
+            flows[back] -= given / self._step
+        n = len(self._network.nodes)
+        self.state[2 * n:3 * n] = 0.0
+        circuit_advance(self._steps, self._step / self._steps, flows, self._network.nodes,
+                        self._network.elements, self.state, self._work)
+        self._account(drawn, paid, returned)
+        self._held[:] = self._work[0, :n]
+        self._show()
+
+    def advance_held(self, drawn: Sequence[float], returned: Sequence[float]) -> None:
+        """Advance by one tick over which the actuators paid the pressures of its start."""
+        self.advance_nodes(
+            drawn, [self._held[node] * volume for node, volume in zip(self._nodes, drawn)],
+            returned)
+
+    def _account(
+            self, drawn: Sequence[float], paid: Sequence[float],
+            returned: Sequence[float]) -> None:
+        """Add oil and energy of the actuators to the samples of their manifold and the whole."""
+        n = len(self._network.nodes)
+        means = self.state[2 * n:3 * n] / self._step
+        whole, total = self.samples[0], 0.0
+        for k, row in enumerate(self._rows):
+            own, back = self.samples[row], self._returns[k]
+            energy = paid[k] - float(self._held[back]) * returned[k]
+            given = means[self._nodes[k]] * drawn[k] - means[back] * returned[k]
+            total += energy
+            own['power'] = energy / self._step
+            own['peak_power'] = max(own['peak_power'], own['power'])
+            for sample in (own, whole):
+                sample['drawn'] += drawn[k]
+                sample['returned'] += returned[k]
+                sample['energy'] += energy
+                sample['held_energy'] += energy - given
+        whole['power'] = total / self._step
+        whole['peak_power'] = max(whole['peak_power'], whole['power'])
+
+    def _show(self) -> None:
+        network = self._network
+        circuit_rates(self.state, self._none, network.nodes, network.elements, self._work[0],
+                      self._rates)
+        show(self._first, self.state, self._rates, network.nodes, network.elements,
+             self._is_return, self._stored, self._shown)
+
+    def snapshot(self) -> bytes:
+        """
+        Return the state beside the samples; `restore` continues from both.
+
+        Raises
+        ------
+        RunError
+            A number is not finite.
+
+        """
+        if not np.isfinite(self.state).all():
+            raise RunError(f'{self._name}: its state is not finite, cannot be saved')
+        return self.state.tobytes()
+
+    def refuse_snapshot(self, snapshot: bytes) -> None:
+        """Refuse bytes that are not a `snapshot` of this circuit; raises `ConfigError`."""
+        if len(snapshot) != self.state.nbytes or not np.isfinite(np.frombuffer(snapshot)).all():
+            raise ConfigError(f'{self._name}: saved state is not one of this circuit')
+
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a `snapshot`, whose sheet and samples are in force."""
+        self.state[:] = np.frombuffer(snapshot)
+        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        samples = self.samples.copy()
+        self._show()
+        self.samples[:] = samples
+
+
+def _at_rest(sheet: CircuitSupply, network: Network) -> NDArray[np.float64]:
+    """Return the state of a circuit at t = 0."""
+    n, m = len(network.nodes), len(network.elements)
+    state = np.zeros(PER_NODE * n + PER_ELEMENT * m)
+    low = sheet.with_return() | {sheet.tank}
+    tank = sheet.return_pressure_mpa * MPA
+    high = min([sheet.pressure_mpa * MPA, *(
+        part.opens_mpa * MPA + tank * isinstance(part, ReliefPart)
+        for part in sheet.by_name.values() if isinstance(part, ReliefPart | UnloadingPart))])
+    for k, place in enumerate(network.places):
+        node = network.nodes[k]
+        if node['is_held']:
+            continue
+        part = sheet.between.get(place)
+        ends = {place} if part is None else {part.inlet, part.outlet}
+        pressure = tank if ends <= low else high
+        state[n + k] = node['gas']['theta_a']
+        state[k] = node_content(pressure, state[n + k], node)
+    for j, element in enumerate(network.elements):
+        if element['law'] == OF_ORIFICE:
+            state[PER_NODE * n + j] = element['orifice']['target']
+    return state
+
+
+def _of_return(sheet: CircuitSupply, network: Network) -> NDArray[np.int64]:
+    """Return of each element whether it is of the return side, (m,)."""
+    low = sheet.with_return()
+    between = sheet.between
+    return np.array([
+        int(owner in low or owner in between and between[owner].inlet in low)
+        for owner in network.owners], np.int64)

@@ -1,0 +1,1 @@
+"""Tests of the parts of a circuit and of circuits as a whole."""
