@@ -11,10 +11,12 @@ SIMULATED = (
 EXACT = {
     ('actuator/saved_rows.py', '(rows.nbytes for rows in self._rows)'),
     ('actuator/scales.py', 'sheet.plant.drive.areas'),
+    ('config/runs/supplies.py', '(len(supply.sampled) for supply in supplies)'),
     ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
     ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),
     ('run/wire/steps.py', '(record.itemsize for record in roster.bodies.values())'),
-    ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))')}
+    ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))'),
+    ('surroundings/surroundings.py', '(own.state.nbytes for own in self._circuits)')}
 """Sums of integers, or of two numbers."""
 
 
