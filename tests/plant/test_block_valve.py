@@ -11,7 +11,7 @@ from isa_ros.plant.block_valve import (
     root_slope, time_to_open)
 from isa_ros.plant.energy import no_powers
 from isa_ros.plant.plant import plant_rates, plant_record, PLANT_STATE
-from isa_ros.plant.servo_valve import conductances, signed_sqrt
+from isa_ros.plant.servo_valve import conductances, signed_sqrt, smoothing
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -79,6 +79,17 @@ def test_the_pressure_in_the_line_lets_in_what_flows_out(k_s, k_t, k_b, p_s, p_t
     assert low - 1e-3 <= found <= high + 1e-3
     # 1e-12 of the largest flow: the last digits of its terms
     assert abs(excess(found)) <= 1e-12 * (k_s + k_t + k_b) * math.sqrt(high - low + delta)
+
+
+@pytest.mark.parametrize('lift', [0.0, 1e-3, 0.1, 1.0])
+def test_the_smoothing_of_a_line_is_that_of_poppet_and_lands_in_series(lift):
+    """V18 with K_1 K_2 / sqrt(K_1^2 + K_2^2): a closed poppet lets the lands drain nothing."""
+    block, k_s, k_t = block_record(SHEET), 2e-7, 1e-7
+    k_b = poppet_conductance(lift, block)
+    series = (k_s + k_t) * k_b / math.hypot(k_s + k_t, k_b)
+    _, delta = blocked_line(k_s, k_t, lift, SUPPLY, BACK, 5e6, 3e13, 1e3, block)
+    assert delta == pytest.approx(smoothing(series, 3e13, 1e3), rel=1e-12)
+    assert delta <= smoothing(k_s + k_t, 3e13, 1e3)
 
 
 @pytest.mark.parametrize('dp', [-8e6, -1e3, 0.0, 50.0, 2e7])

@@ -64,6 +64,13 @@ def test_the_outputs_wait_for_the_valves_to_open_and_both_go_off_together():
     assert driven.seen == (DISABLED, False, False) and driven.own.is_open == 0
 
 
+def test_valves_without_current_are_not_open_however_long_ago_it_went_off():
+    driven = Driven()
+    driven.ask(HAS_ENABLE, 0)
+    driven.convert(400)     # longer than they take to open
+    assert driven.own.is_open == 0
+
+
 def test_what_is_disabled_while_its_valves_open_begins_anew():
     driven = Driven(auto_enable=0)
     driven.ask(HAS_ENABLE, 1)

@@ -9,7 +9,7 @@ from isa_ros.core.parameter import defaults
 from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
-from isa_ros.reu.protection import request_clear, write_trips
+from isa_ros.reu.protection import GONE, request_clear, TAKEN, write_trips
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import protect
 import numpy as np
@@ -64,7 +64,7 @@ def test_the_switch_turns_all_off() -> None:
 
 
 @pytest.mark.parametrize(('delay_ms', 'conversions'), [
-    (0.0, 0), (0.1, 1), (0.11, 2), (10.0, 100), (50.0, 500)])
+    (0.0, 0), (0.1, 1), (0.11, 2), (0.7, 7), (10.0, 100), (50.0, 500)])
 def test_the_delay_is_counted_in_conversions(delay_ms: float, conversions: int) -> None:
     """A trip is set as many conversions after the first one beyond the level, and not before."""
     watched = Watched(only('overload', trip=0.5, delay_ms=delay_ms))
@@ -232,6 +232,54 @@ def test_bad_levels_are_refused(levels: dict[str, float], message: str) -> None:
     with pytest.raises(ParameterError) as refused:
         only('overload', **levels)
     assert str(refused.value).startswith(message)
+
+
+def test_a_supply_that_an_emergency_stop_took_is_not_low_until_it_is_back() -> None:
+    """It has fallen below the trip at 4.4 MPa and is back beyond the hysteresis, 4.84 MPa."""
+    watched = Watched(only('supply_low', 0.1, trip=0.2, delay_ms=0.0, reaction='disable'))
+    watched.state.status.is_on, watched.own.supply_taken = 0, TAKEN
+    for pressure, taken in ((20e6, TAKEN), (5e6, TAKEN), (4e6, GONE), (0.0, GONE), (4.6e6, GONE),
+                            (5e6, 0)):
+        watched.show('supply_low', pressure)
+        watched.convert()
+        assert (watched.own.supply_taken, watched.own.trips) == (taken, 0), pressure
+    watched.show('supply_low', 4e6)
+    watched.convert()
+    assert watched.has('supply_low')[1]
+
+
+def test_outputs_that_are_on_need_the_supply_whatever_took_it() -> None:
+    watched = Watched(only('supply_low', 0.1, trip=0.2, delay_ms=0.0, reaction='disable'))
+    watched.own.supply_taken = TAKEN
+    watched.show('supply_low', 1e6)
+    watched.convert()
+    assert watched.own.supply_taken == 0 and watched.has('supply_low')[1]
+
+
+def test_while_the_supply_is_taken_only_its_own_condition_rests() -> None:
+    levels = defaults(Protection).supply_low
+    watched = Watched(replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='disable'),
+        supply_low=replace(levels, trip=0.2, delay_ms=0.0)))
+    watched.state.status.is_on, watched.own.supply_taken = 0, TAKEN
+    watched.show('supply_low', 1e6)
+    watched.show('overload', 6e3)
+    watched.convert()
+    assert conditions(float(watched.own.trips)) == ['overload']
+
+
+def test_what_moved_while_a_program_stood_still_is_no_jump() -> None:
+    """The time is judged once, by the first conversion after it."""
+    watched = Watched(defaults(Protection), watchdog=5e-3)
+    watched.convert(2)
+    watched.state.frozen_for, watched.state.measured.position = 4e-3, 0.08
+    watched.convert()
+    assert watched.own.values[BITS['encoder_jump']] == 0.0
+    assert watched.own.values[BITS['watchdog']] == 4e-3 and watched.state.frozen_for == 0.0
+    watched.state.link_silence = 2e-3
+    watched.convert()
+    assert watched.own.values[BITS['watchdog']] == 0.0
+    assert watched.own.values[BITS['link_lost']] == 2e-3
 
 
 def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:

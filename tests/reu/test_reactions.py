@@ -138,3 +138,5 @@ def test_a_quick_stop_of_the_user_is_followed_while_a_trip_damps() -> None:
     assert (in_force.position, in_force.velocity) == (0.07, 0.4)
     status.is_stopping = 0
     assert setpoint_in_force(watched.state).position == 0.05
+    status.is_returning, status.back.position = 1, 0.09     # damping wins over a way back, too
+    assert setpoint_in_force(watched.state).position == 0.05

@@ -19,7 +19,7 @@ def measured(**values):
 
 
 @pytest.mark.parametrize(('name', 'reading', 'part'), [
-    ('pressure_a', -0.25 * 25e6, 0.25), ('pressure_b', 1.1 * 25e6, 0.1), ('pressure_a', 0.0, 0.0),
+    ('pressure_a', -0.25 * 25e6, 0.25), ('pressure_b', -0.25 * 25e6, 0.25), ('pressure_b', 1.1 * 25e6, 0.1), ('pressure_a', 0.0, 0.0),
     ('force', -1.25e4, 0.25), ('force', 1e4, 0.0), ('current', 15e-3, 0.2),
     ('spool', 3.6e-4, 0.2)])
 def test_a_reading_beyond_its_range_is_told_as_a_part_of_it(name, reading, part):
@@ -146,6 +146,16 @@ def test_a_block_that_does_not_act_has_no_error(acting, is_on, expected):
     state.force_reference, state.measured.force = 1500.0, 500.0
     found = own.supervise(SUPPLY, CONSTANTS, state, watched.own.supervision)
     assert found[:2] == pytest.approx(expected, abs=1e-9)
+
+
+def test_without_a_force_block_there_is_no_force_error():
+    constants = CONSTANTS.copy().view(np.recarray)
+    constants.follows_force = 0
+    watched = Watched(off())
+    state = watched.state
+    state.status.acting = POSITION
+    state.force_reference, state.measured.force = 1500.0, 500.0
+    assert own.supervise(SUPPLY, constants, state, watched.own.supervision)[1] == 0.0
 
 
 def test_outputs_that_are_off_do_not_let_the_force_oscillate():

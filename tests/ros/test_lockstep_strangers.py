@@ -57,7 +57,7 @@ class Counting:
     is_actuator = True
 
     def __init__(self) -> None:
-        self.ticks = self.snapshots = 0
+        self.ticks = self.snapshots = self.published = 0
 
     def check(self, step: Step) -> None:
         """Refuse what no actuator of the run can execute."""
@@ -74,7 +74,8 @@ class Counting:
         return [b'tick %d' % self.ticks]
 
     def publish(self) -> None:
-        """Publish nothing."""
+        """Count the first messages."""
+        self.published += 1
 
     def serve(self) -> None:
         """Take nothing."""
@@ -101,7 +102,12 @@ class Participant:
         starts = np.zeros(2, START)
         self.answers_to(
             encode_hello(RUN, 1, 1_000_000, starts, ROSTER),
-            encode_begin(RUN, [None, self._end._identity]))
+            encode_begin(RUN, [None, self.identity]))
+
+    @property
+    def identity(self) -> bytes:
+        """Return what names this node."""
+        return self._end._identity
 
     def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
         """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
@@ -188,13 +194,22 @@ def test_an_odd_step_is_discarded_and_the_run_goes_on(member, odd):
     assert member.role.ticks == 2
 
 
+def test_the_first_messages_are_published_once_however_often_a_run_begins(member):
+    """A begin comes again while a run has no ticks on the topic."""
+    again = encode_begin(RUN, [None, member.identity])
+    assert member.answers_to(again, again) == [] and member.role.published == 1
+    assert member.answers_to(tick(0), again, tick(1)) == [done(0), done(1)]
+    assert member.role.published == 3   # and those of two ticks
+
+
 def test_a_second_node_of_a_name_leaves_the_run_that_begins_with_the_first(member):
     """Its answer to the hello was lost or late; it gives its name, and advances with no tick."""
     assert member.answers_to(
         encode_end(RUN), encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER),
-        encode_begin(RUN + 1, [None, b'the first']), tick(0, RUN + 1)) == [
+        encode_begin(RUN + 1, [None, b'the first'])) == [
             (AnswerKind.READY, 1, False), (AnswerKind.UNBOUND, 0, False)]
     assert member.answers[-1].parts == [b'kfe']
+    assert member.answers_to(tick(0, RUN + 1)) == []    # it has said so a moment ago
     assert member.role.ticks == 0
 
 

@@ -22,6 +22,7 @@ from std_msgs.msg import UInt8MultiArray
 
 RUN_IDS = strategies.integers(1, 2**63)
 TICKS = strategies.integers(0, 2**62)
+_ROWS = 20  # byte of a step's number of participants: after prefix, version and kind
 
 
 def rows(dtype: np.dtype, n: int) -> np.ndarray:
@@ -178,6 +179,15 @@ def test_bytes_are_a_uint8_multi_array(data):
     assert list(message.layout.dim) == []
     assert message.layout.data_offset == 0
     assert bytes(message.data) == data[16:]
+
+
+@pytest.mark.parametrize('participants', [1, 3])
+def test_a_begin_whose_parts_are_not_its_bytes_is_refused(participants):
+    """Of two participants, and said to be of fewer or more."""
+    step = encode_begin(5, [b'node', None])
+    assert step[_ROWS:_ROWS + 4] == (2).to_bytes(4, 'little')
+    with pytest.raises(WireError, match='parts'):
+        decode_step(step[:_ROWS] + participants.to_bytes(4, 'little') + step[_ROWS + 4:])
 
 
 @pytest.mark.parametrize(('decode', 'data'), [

@@ -246,7 +246,7 @@ def test_a_run_that_is_saved_while_a_dump_waits_goes_on_byte_for_byte():
 
 
 @pytest.mark.parametrize(('lasted', 'words'), [
-    (b'', 'emergency stops has 0 bytes, must have 8'),
+    (b'', 'emergency stops has 0 bytes, must have 8'), (bytes(16), 'has 16 bytes, must have 8'),
     ((-1).to_bytes(8, 'little', signed=True), 'pair.opened: saved state has it open for -1 ticks'),
     ((4).to_bytes(8, 'little'), 'open for 4 ticks, must be >= 0 and <= 3')])
 def test_a_saved_state_whose_line_has_been_open_for_other_ticks_is_refused(lasted, words):

@@ -68,7 +68,6 @@ class RobotController(Controller):
 
     def start(self, names: Sequence[str]) -> None:
         """Begin anew with the actuators of the robot; as `Controller.start`."""
-        self._every = None
         self._own.start(list(self._names))
 
     def step(self, state: State) -> Mapping[str, Setpoint] | Setpoints:

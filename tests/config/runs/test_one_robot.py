@@ -104,6 +104,27 @@ def test_a_pump_of_the_run_has_its_own_name():
     assert look.seen[0][2] == ['pump', 'supply']
 
 
+def test_a_supply_of_another_robot_keeps_its_name():
+    """Of one that feeds both a robot is told what it feeds of its own."""
+    run = isa_ros.load(legs(supplies={'r1/pump': PUMP | {'feeds': ['r1/kfe', 'r2/kfe']}}))
+    first, second = (one_robot(run.configuration, robot, 'here') for robot in ('r1', 'r2'))
+    assert [(own.name, own.feeds) for own in first.supplies] == [
+        ('pump', ('kfe',)), ('supply', ('haa', 'hfe'))]
+    assert [(own.name, own.feeds) for own in second.supplies] == [
+        ('r1/pump', ('kfe',)), ('supply', ('haa', 'hfe'))]
+
+
+def test_a_saved_run_continues_with_the_controllers_of_its_robots():
+    first, second = isa_ros.load(pair()).simulation(), isa_ros.load(pair()).simulation()
+    for _ in range(4):
+        first.step()
+    second.restore(first.snapshot())
+    for own in (first, second):
+        own.step()
+    assert first.applied.tobytes() == second.applied.tobytes()
+    assert [float(second.applied[row]['effort']) for row in (1, 5)] == [4.0, 104.0]
+
+
 def test_one_robot_of_a_run_is_that_of_its_file():
     """Names, joints and supply; the source and the tick are those of the run."""
     run, leg = (isa_ros.load(tree).configuration for tree in (pair(), read(find('leg', CONFIG))))

@@ -118,15 +118,19 @@ def test_a_link_of_the_run_lies_below_the_links_of_actuators():
 def test_what_belongs_to_the_run_is_that_of_the_robots_or_given(tmp_path: Path):
     leg = read(find('leg', CONFIG))
     for name, step in (('slow', 2.0), ('quick', 0.5)):
-        (tmp_path / f'{name}.yaml').write_text(dump(leg | {'step_ms': step, 'seed': 3}))
+        (tmp_path / f'{name}.yaml').write_text(dump(leg | {
+            'step_ms': step, 'controller_offset_ms': 0.8 * step, 'seed': 3, 'accept': 'scenario'}))
 
     def run(others: str, **keys: Any) -> RunConfig:
         (tmp_path / 'two.yaml').write_text(dump({'name': 'two', 'robots': {
             'r1': {'file': 'slow.yaml'}, 'r2': {'file': others}}, **keys}))
         return isa_ros.load(tmp_path / 'two.yaml').configuration
     assert (run('slow.yaml').step_ns, run('slow.yaml').seed) == (2_000_000, 3)
-    assert (run('quick.yaml', step_ms=1.0).step_ns, run('slow.yaml', seed=5).seed) == (
-        1_000_000, 5)
+    assert run('slow.yaml').accept == 'scenario'
+    assert run('slow.yaml').controller_offset_ns == 1_600_000
+    assert run('slow.yaml', seed=5).seed == 5
+    given = run('quick.yaml', step_ms=1.0, controller_offset_ms=0.4)
+    assert (given.step_ns, given.controller_offset_ns) == (1_000_000, 400_000)
     with pytest.raises(ConfigError, match=(
             'two.yaml: robots: step_ns = 2000000 of r1 and 500000 of r2, must be one for all; '
             'give step_ms in two.yaml')):
