@@ -287,7 +287,7 @@ class SmartActuator:
         ------
         ConfigError
             The bytes are not a snapshot of this actuator, or a number in it is not finite or
-            beyond its range.
+            beyond its range; the actuator is then as before.
 
         """
         expected = TIME_BYTES + self._saved.nbytes + self.tuning.nbytes
@@ -296,9 +296,9 @@ class SmartActuator:
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
         found = self._saved.read(snapshot, TIME_BYTES)
+        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
         self.t_ns = t_ns
         self._saved.restore(found)
-        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:

@@ -175,7 +175,19 @@ class Tuning:
             b'' if self._channel is None else self._channel.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot`; raises as `accept`, also for a value that is not finite."""
+        """
+        Continue from a `snapshot`.
+
+        Raises as `accept`, also for a value that is not finite; then all is as before.
+        """
+        before = self.snapshot()
+        try:
+            self._take(snapshot)
+        except ConfigError:
+            self._take(before)
+            raise
+
+    def _take(self, snapshot: bytes) -> None:
         self.values.restore(snapshot[:self.values.nbytes])
         if self._channel is not None:
             self._channel.restore(snapshot[self.values.nbytes:])

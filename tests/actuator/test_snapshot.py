@@ -69,6 +69,27 @@ def test_a_tuned_value_that_is_not_finite_is_not_read() -> None:
         actuator.restore(snapshot)
 
 
+@pytest.mark.parametrize(('value', 'words'), [
+    (np.nan, 'force.kp = nan, must be finite'), (-3.0, 'force.kp = -3')])
+def test_a_refused_state_leaves_an_actuator_as_it_was(value: float, words: str) -> None:
+    """Of another time, with another gain in force: it goes on as if nothing had come."""
+    actuator, twin = moving(), moving()
+    for own in (actuator, twin):
+        own.tune({'force.kp': 1.1e-7})
+        run(own, 3)
+    other = moving()
+    other.tune({'force.kp': 1.5e-7})
+    run(other, 40)
+    kp = np.float64(1.5e-7).tobytes()
+    snapshot = other.snapshot()
+    at = snapshot.rindex(kp)    # the last accepted one, behind those in force
+    with pytest.raises(ConfigError) as refused:
+        actuator.restore(snapshot[:at] + np.float64(value).tobytes() + snapshot[at + 8:])
+    assert words in str(refused.value)
+    assert actuator.snapshot() == twin.snapshot()
+    assert run(actuator, 5) == run(twin, 5)
+
+
 @pytest.mark.parametrize('t_ns', [1, MAX_TICKS * TICK.step_ns, 2**64 - 1])
 def test_a_time_that_is_no_tick_is_not_read(t_ns: int) -> None:
     actuator = moving()

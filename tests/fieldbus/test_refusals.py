@@ -75,3 +75,33 @@ def test_gains_of_process_data_beyond_their_range_are_limited():
         assert master.cycle(ENABLE) & 1 << 11
         assert rig.simulation.applied[0]['stiffness'] == applied
         assert struct.unpack('<f', rig.device.read(0x2010, 1))[0] == stiffness
+
+
+@pytest.mark.parametrize('profile', ['cia402', 'cia408'])
+def test_a_mode_of_process_data_that_is_refused_reads_back_as_the_one_in_force(profile):
+    """By mail and by process data; the reason stays."""
+    mode, shown = {'cia402': (0x6060, 0x6061), 'cia408': (0x6043, 0x6043)}[profile]
+    rig = Rig(profile=profile)
+    master = Master(rig)
+    rig.tick()
+    before = rig.device.read(mode, 0)
+    content = bytearray(rig.device.size(0x1610))
+    content[2] = 99     # after the control word
+    rig.device.receive(0x1610, bytes(content))
+    assert rig.device.read(mode, 0) == before == rig.device.read(shown, 0)
+    assert '99 does not exist here' in master.upload(0x2003)
+
+
+def test_an_integer_of_process_data_beyond_its_range_is_not_taken():
+    """A limit of 60 times the rated force would be none."""
+    rig = Rig()
+    words = [0x60720010, 0x60E00010, 0x60400010]
+    for k, word in ((0, 0), *enumerate(words, 1), (0, len(words))):
+        entry = rig.device.table.entry(0x1600, k)
+        rig.device.write(0x1600, k, entry.data_type.pack(word), is_preoperational=True)
+    rig.device.receive(0x1600, struct.pack('<3H', 500, 700, 6))
+    rig.device.receive(0x1600, struct.pack('<3H', 60000, 800, 7))
+    found = [int.from_bytes(rig.device.read(index, 0), 'little')
+             for index in (0x6072, 0x60E0, 0x6040)]
+    assert found == [500, 800, 7]
+    assert Master(rig).upload(0x2003) == '0x6072:0 Max torque = 60000, must be <= 1000'

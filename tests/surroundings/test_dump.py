@@ -7,7 +7,8 @@ from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.parameter import defaults
 from isa_ros.surroundings import supply
 from isa_ros.surroundings.accumulator import supply_rates
-from isa_ros.surroundings.dump import LagDump, ValveDump
+from isa_ros.surroundings.dump import dumped, LagDump, ValveDump
+from isa_ros.surroundings.return_line import SUPPLY_STEP
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -119,6 +120,17 @@ def test_rates_are_those_of_python():
         for opening in (0.0, 0.4, 1.0):
             arguments = (pressure, 1e-4, 5e-5, opening, row)
             assert supply_rates(*arguments) == supply_rates.py_func(*arguments)
+
+
+def test_a_stiff_line_falls_no_faster_than_a_step_can_follow():
+    """C14: the slope of the flow over the line's capacitance, 1.6 of a step; below it V5's own."""
+    row = supply.supply_record(
+        opened(replace(SHEET, dump=VALVE))).view(np.recarray)[0].dump_valve
+    for elastance in (1e11, 1e13, 1e15):
+        slope = (dumped(1.0, 1.0, elastance, row) - dumped(-1.0, 1.0, elastance, row)) / 2.0
+        fastest = 1.6 / SUPPLY_STEP
+        assert slope * elastance <= fastest * (1.0 + 1e-9)
+    assert slope * elastance > 0.5 * fastest    # and not slower than it must be
 
 
 def test_an_open_valve_has_its_rated_flow():

@@ -12,7 +12,7 @@ from isa_ros.fieldbus.device.bus_device import Emergency, Identity
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, LOAD, RESTORE, STORE
 from isa_ros.fieldbus.device.diagnosis import (
     ACKNOWLEDGED, delete_messages, note_message, refuse_acknowledgement, take_acknowledgement)
-from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary
+from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary, refuse_beyond
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
 from isa_ros.fieldbus.device.integer_twins import take_twins, twin_actuals, TWINS
@@ -152,14 +152,25 @@ class ActuatorDevice:
         return self._process_data.layout(pdo).packing.size
 
     def receive(self, pdo: int, data: bytes) -> None:
-        """Take process data; those that are too short are reported and not used."""
+        """
+        Take process data; those that are too short are reported and not used.
+
+        An integer beyond its range is not taken: the value that there was stays.
+        """
         layout = self._process_data.layout(pdo)
         if len(data) < layout.packing.size:
             self._faults.note(PDO_LENGTH)
             note_refusal(self._values, f'0x{pdo:04X}: {len(data)} bytes of process data, must be '
                          f'>= {layout.packing.size}')
             return
-        self._values.update(zip(layout.keys, layout.packing.unpack_from(data)))
+        found = dict(zip(layout.keys, layout.packing.unpack_from(data)))
+        for entry in layout.bounded:
+            try:
+                refuse_beyond(entry, found[entry.index, entry.subindex])
+            except SdoAbort as refused:
+                note_refusal(self._values, refused.reason)
+                del found[entry.index, entry.subindex]
+        self._values.update(found)
         self._take_received(layout.keys)
 
     def _take_received(self, keys: Sequence[Key]) -> None:

@@ -73,6 +73,7 @@ class Drive:
             self._mode = mode
             self._demand = self._axis.position
         else:
+            self._values[self._mode_key] = self._mode
             note_refusal(self._values, self._refusal(mode))
 
     def _refusal(self, mode: int) -> str:

@@ -6,6 +6,7 @@ or assignment is written as CiA 301 wants it: its number of entries to 0, the en
 """
 
 from collections.abc import Iterable, Sequence
+import math
 import struct
 from typing import NamedTuple
 
@@ -42,6 +43,8 @@ class _Layout(NamedTuple):
 
     packing: struct.Struct
     keys: tuple[Key, ...]
+    bounded: tuple[ObjectEntry, ...]
+    """Integers with a range of their own: a value beyond it is refused."""
 
 
 def is_mapping(index: int) -> bool:
@@ -134,14 +137,17 @@ class ProcessData:
         return found
 
     def _layout_of(self, pdo: int, words: Sequence[int]) -> _Layout:
-        text, keys = '<', []
+        text, keys, entries = '<', list[Key](), list[ObjectEntry]()
         for word in words:
             if word >> 16 == _GAP:
                 text += f'{(word & 0xFF) >> 3}x'
                 continue
             keys.append((word >> 16, word >> 8 & 0xFF))
-            text += self._table.entry(*keys[-1]).data_type.code
-        found = _Layout(struct.Struct(text), tuple(keys))
+            entries.append(self._table.entry(*keys[-1]))
+            text += entries[-1].data_type.code
+        found = _Layout(struct.Struct(text), tuple(keys), tuple(
+            one for one in entries if one.data_type.is_integer
+            and (one.low, one.high) != (-math.inf, math.inf)))
         if found.packing.size > (CAN_BYTES if pdo & 0xFF < CAN_PDOS else _MOST_BYTES):
             raise SdoAbort(PDO_TOO_LONG)
         return found

@@ -4,8 +4,9 @@ import isa_ros
 from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.signals import SAMPLE
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.device.faults import OWN_CODES, stopping_bits
+from isa_ros.fieldbus.device.faults import EMERGENCY_STOP, OWN_CODES, stopping_bits
 from isa_ros.reu.protection_sheet import reaction_of
+from isa_ros.tick.emergency_stop import LINE
 import numpy as np
 import pytest
 
@@ -30,6 +31,11 @@ class Fed:
         self.sample['trips'], self.sample['device_state'] = trips, state
         self.device.take_sample(self.sample, self.tick)
         self.tick += 1
+        return [one.code for one in self.device.emergencies()]
+
+    def stop(self, is_open):
+        """Open or close the line of the emergency stop; return the codes that are reported."""
+        self.device.take_changes({LINE: float(is_open)})
         return [one.code for one in self.device.emergencies()]
 
     def upload(self, index, subindex=0):
@@ -92,3 +98,14 @@ def test_the_data_of_a_message_are_the_bits_of_all_trips():
     fed.device.take_sample(fed.sample, 1)
     for one in fed.device.emergencies():
         assert (int.from_bytes(one.data, 'little'), len(one.data)) == (0b1000_0000_0010, 5)
+
+
+def test_an_open_emergency_stop_is_told_once_and_no_end_before_its_release():
+    """A trip that comes and goes meanwhile: its end is not the end of all errors."""
+    fed, bit = Fed(), 1 << BITS['supply_low']
+    code = CONDITIONS[BITS['supply_low']].error.code
+    assert fed.stop(True) == [EMERGENCY_STOP.code] and fed.stop(True) == []
+    assert fed.take(bit) == [code] and fed.take() == []
+    assert fed.stop(False) == [0] and fed.stop(False) == []
+    assert fed.stop(True) == [EMERGENCY_STOP.code] and fed.take(bit) == [code]
+    assert fed.stop(False) == [] and fed.take() == [0]
