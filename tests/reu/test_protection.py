@@ -64,7 +64,7 @@ def test_the_switch_turns_all_off() -> None:
 
 
 @pytest.mark.parametrize(('delay_ms', 'conversions'), [
-    (0.0, 0), (0.1, 1), (0.11, 2), (0.7, 7), (10.0, 100), (50.0, 500)])
+    (0.0, 0), (0.1, 1), (0.11, 2), (1.3, 13), (10.0, 100), (50.0, 500)])
 def test_the_delay_is_counted_in_conversions(delay_ms: float, conversions: int) -> None:
     """A trip is set as many conversions after the first one beyond the level, and not before."""
     watched = Watched(only('overload', trip=0.5, delay_ms=delay_ms))

@@ -19,7 +19,8 @@ def measured(**values):
 
 
 @pytest.mark.parametrize(('name', 'reading', 'part'), [
-    ('pressure_a', -0.25 * 25e6, 0.25), ('pressure_b', -0.25 * 25e6, 0.25), ('pressure_b', 1.1 * 25e6, 0.1), ('pressure_a', 0.0, 0.0),
+    ('pressure_a', -0.25 * 25e6, 0.25), ('pressure_b', -0.25 * 25e6, 0.25),
+    ('pressure_b', 1.1 * 25e6, 0.1), ('pressure_a', 0.0, 0.0),
     ('force', -1.25e4, 0.25), ('force', 1e4, 0.0), ('current', 15e-3, 0.2),
     ('spool', 3.6e-4, 0.2)])
 def test_a_reading_beyond_its_range_is_told_as_a_part_of_it(name, reading, part):
