@@ -9,7 +9,6 @@ from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import build, build_one_of
 from isa_ros.config.text.sections import SourcedValue
-from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.plant.plant import plant_record
@@ -39,11 +38,11 @@ def plant_row(model: str) -> np.record:
     return plant_record(actuator_sheet(model).plant)[0]
 
 
-def override(sheet: Any, path: str, value: float) -> Any:
-    """Return the sheet with one parameter replaced, ``path`` dotted."""
+def override(sheet: Any, path: str, value: Any) -> Any:
+    """Return the sheet with one parameter or section replaced, ``path`` dotted."""
     head, _, rest = path.partition('.')
     below = getattr(sheet, head)
-    changed = override(below, rest, value) if isinstance(below, Parameters) else value
+    changed = override(below, rest, value) if rest else value
     return replace(sheet, **{head: changed})
 
 

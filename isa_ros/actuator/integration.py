@@ -13,9 +13,10 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.loads.forces import LOAD_STATE, own_load_force
 from isa_ros.loads.port import load_acceleration
-from isa_ros.plant.chambers import begin_volumes, end_volumes, is_of_volumes
+from isa_ros.plant.chambers import is_of_volumes
 from isa_ros.plant.energy import ENERGIES
-from isa_ros.plant.plant import plant_rates, PLANT_STATE, settle
+from isa_ros.plant.plant import (
+    begin_volumes, end_volumes, plant_rates, PLANT_STATE, settle)
 import numpy as np
 
 TOTALS = np.dtype([
@@ -135,11 +136,11 @@ def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
     pressures that ends below the atmosphere is repeated as one of volumes  (C11).
     """
     own, oil = continuous[0].plant, actuator.plant.chambers
-    of_volumes = is_of_volumes(
+    of_volumes = own.cushion.end != 0.0 or is_of_volumes(
         h, own.chambers, own.mechanics.position, own.mechanics.velocity, oil)
     while True:
         if of_volumes:
-            begin_volumes(own.chambers, own.mechanics.position, oil)
+            begin_volumes(own, actuator.plant)
         stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k)
         if of_volumes or not is_torn(h, own.chambers, rates):
             break
@@ -149,7 +150,7 @@ def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
     if of_volumes:
-        end_volumes(own.chambers, own.mechanics.position, oil)
+        end_volumes(own, actuator.plant)
     settle(own, actuator.plant)
 
 
@@ -157,12 +158,13 @@ def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
 def end_steps(tau, weight, drive, port, actuator, continuous, rates, y, k):
     """Add the powers after the last step with their ``weight``, in s."""
     own, oil = continuous[0].plant, actuator.plant.chambers
-    of_volumes = is_of_volumes(0.0, own.chambers, own.mechanics.position, 0.0, oil)
+    of_volumes = (is_of_volumes(0.0, own.chambers, own.mechanics.position, 0.0, oil)
+                  or own.cushion.end != 0.0)
     if of_volumes:
-        begin_volumes(own.chambers, own.mechanics.position, oil)
+        begin_volumes(own, actuator.plant)
     write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
     if of_volumes:
-        end_volumes(own.chambers, own.mechanics.position, oil)
+        end_volumes(own, actuator.plant)
     add_powers(weight, y, k)
 
 

@@ -55,6 +55,7 @@ def write_sample(plant, reu, sample):
     oil = plant.chambers
     sample.chamber_pressure_a, sample.chamber_pressure_b = oil.p_a, oil.p_b
     sample.cavity_a, sample.cavity_b = oil.cavity_a, oil.cavity_b
+    sample.cushion_pressure = plant.cushion.p
     write_trips(reu.protection, sample)
     write_device(reu.status, sample)
 

@@ -63,6 +63,7 @@ def evidence_of(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
         force_range=plant.sensors.force_range, stiction=plant.friction.stiction,
         viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia,
+        end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
         speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
         valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
 
@@ -74,6 +75,7 @@ def supervision_of(plant: np.record, reu: Reu, has_spool_sensor: bool) -> np.rec
     speed = ratings_of(plant).speed
     return record(
         SUPERVISION, area_a=oil.area_a, area_b=oil.area_b, stroke=oil.stroke,
+        end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
         flow_gain=flow_curve(valve.x_max, valve) * valve.per_root_drop,
         force_range=sensors.force_range, pressure_range=sensors.pressure_range,
         current_range=sensors.current_range,

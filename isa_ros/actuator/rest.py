@@ -4,6 +4,7 @@ from isa_ros.actuator.inbox import write_applied
 from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
+from isa_ros.plant.cushion import divide
 from isa_ros.plant.plant import exact_force, rest_pressures
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
@@ -26,6 +27,7 @@ def rest_plant(
     state.load.position = position - force / own.plant.mechanics.k_s
     state.plant.chambers.p_a, state.plant.chambers.p_b = rest_pressures(
         own.plant, supply, back, force)
+    divide(state.plant, own.plant)
     thermal.oil = thermal.body = own.plant.thermal.start
     reply = row_record(memory.replies)
     reply.force = exact_force(state.plant, state.load.position, state.load.velocity, own.plant)

@@ -15,6 +15,7 @@ from isa_ros.plant.block_valve import NoneBlock, time_to_open, WHEN_OFF
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
+from isa_ros.plant.cushion_sheets import refuse_cushions
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
 from isa_ros.reu.block import Pid
@@ -57,7 +58,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         A spool block without a spool sensor, a loop that would be closed twice or not at
         all, a limit beyond the spool's stop, or an error of `refuse_nonsense`.
     ParameterError
-        A sensor's delay that the converters cannot have.
+        A sensor's delay that the converters cannot have, or a cushion that does not fit.
 
     """
     reu, plant = sheet.reu, sheet.plant
@@ -82,6 +83,9 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
             f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
     _refuse_hysteresis_of_pilot(plant)
     _refuse_limit_beyond_stop(sheet)
+    if isinstance(plant, LinearPlant):
+        refuse_cushions(
+            plant.drive, plant.cushion_a, plant.cushion_b, plant.oil.dead_volume_ml)
     if isinstance(plant.block_valve, NoneBlock):
         for key, reaction in reactions_of(reu.protection).items():
             if reaction == 'block':

@@ -10,73 +10,17 @@ pressures below the atmosphere, or oil with air, is one of volumes (C11, `cavita
 
 from dataclasses import dataclass
 import math
-from typing import Any
 
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
-from isa_ros.core.units import MILLI, MILLILITRE
+from isa_ros.core.units import MILLILITRE
 from isa_ros.errors import ParameterError
 from isa_ros.plant.cavitation import contents, lack, LEAST_AIR_PRESSURE, modulus
+from isa_ros.plant.drives import Cylinder, Vane
 import numpy as np
-
-
-def rated_pressure() -> Any:
-    """Declare the pressure that an actuator is sized for; no equation of the plant has it."""
-    return parameter(
-        'supply above return pressure that ratings, load cell and gains are sized for', 'MPa',
-        absent=20.7, source='paper Table 2', gt=0.0, le=70.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Cylinder(Parameters):
-    """Differential cylinder."""
-
-    bore_mm: float = parameter('piston diameter', 'mm', gt=0.0, le=500.0)
-    rod_mm: float = parameter('rod diameter', 'mm', gt=0.0, le=500.0)
-    stroke_mm: float = parameter('stroke', 'mm', gt=0.0, le=5000.0)
-    rated_pressure_mpa: float = rated_pressure()
-
-    def __post_init__(self) -> None:
-        """Refuse a rod that leaves no piston area on its side."""
-        super().__post_init__()
-        if self.rod_mm >= self.bore_mm:
-            raise ParameterError(
-                f'rod_mm = {self.rod_mm:g} mm, must be < bore_mm = {self.bore_mm:g} mm')
-
-    @property
-    def areas(self) -> tuple[float, float]:
-        """Return (A_A, A_B) in m2."""
-        bore, rod = self.bore_mm * MILLI, self.rod_mm * MILLI
-        return math.pi / 4.0 * bore * bore, math.pi / 4.0 * (bore * bore - rod * rod)
-
-    @property
-    def stroke(self) -> float:
-        """Return the stroke in m."""
-        return self.stroke_mm * MILLI
-
-
-@dataclass(frozen=True, kw_only=True)
-class Vane(Parameters):
-    """Rotary vane actuator with equal displacement both ways."""
-
-    displacement_cc_per_rad: float = parameter(
-        'displacement D_m', 'cc/rad', ge=1e-3, le=1000.0)
-    rotation: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
-    rated_pressure_mpa: float = rated_pressure()
-
-    @property
-    def areas(self) -> tuple[float, float]:
-        """Return (D_m, D_m) in m3/rad."""
-        displacement = self.displacement_cc_per_rad * MILLILITRE
-        return displacement, displacement
-
-    @property
-    def stroke(self) -> float:
-        """Return the range in rad."""
-        return self.rotation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -229,17 +173,15 @@ def is_of_volumes(h, y, s, v, chambers):
 
 
 @kernel
-def begin_volumes(y, s, chambers):
+def begin_volumes(y, v_a, v_b, chambers):
     """Begin a step of volumes: write the `lack` of both chambers in place of their cavities."""
-    v_a, v_b = volumes(s, chambers)
     y.cavity_a = lack(y.p_a, y.cavity_a, v_a, chambers)
     y.cavity_b = lack(y.p_b, y.cavity_b, v_b, chambers)
 
 
 @kernel
-def end_volumes(y, s, chambers):
+def end_volumes(y, v_a, v_b, chambers):
     """End a step of volumes: write pressures and cavities of what both chambers lack  (C11)."""
-    v_a, v_b = volumes(s, chambers)
     y.p_a, _, _ = contents(y.cavity_a, v_a, y.p_a, chambers)
     y.p_b, _, _ = contents(y.cavity_b, v_b, y.p_b, chambers)
     y.cavity_a, y.cavity_b = max(0.0, y.cavity_a), max(0.0, y.cavity_b)

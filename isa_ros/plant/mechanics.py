@@ -61,10 +61,6 @@ def sensor_force(s, v, x, x_rate, mechanics):
 
 @kernel
 def stop_force(s, v, stroke, mechanics):
-    """
-    Return the force of the actuator's own end stops at 0 and ``stroke``  (M3), in N or Nm.
-
-    Neglected: cushions, which throttle the oil that leaves a chamber near the end.
-    """
+    """Return the force of the actuator's own end stops at 0 and ``stroke``  (M3), in N or Nm."""
     return (one_sided(-s, -v, mechanics.k_stop, mechanics.d_stop)
             - one_sided(s - stroke, v, mechanics.k_stop, mechanics.d_stop))

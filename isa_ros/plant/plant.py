@@ -11,10 +11,11 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
-    block_valve, chambers, coil, friction, hysteresis, mechanics, relief, sensors, spool, thermal,
-    valve_record)
+    block_valve, chambers, coil, cushion, drives, friction, hysteresis, mechanics, relief, sensors,
+    spool, thermal, valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
+from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, trapped_area
 from isa_ros.plant.service_lines import rigid_lines
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
@@ -33,6 +34,8 @@ PLANT = np.dtype([
     ('thermal', thermal.THERMAL),
     ('block', block_valve.BLOCK),
     ('hysteresis', hysteresis.HYSTERESIS),
+    ('cushion_a', cushion.CUSHION),
+    ('cushion_b', cushion.CUSHION),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -41,6 +44,7 @@ PLANT_STATE = np.dtype([
     ('friction', friction.FRICTION_STATE),
     ('mechanics', mechanics.MECHANICS_STATE),
     ('block', block_valve.BLOCK_STATE),
+    ('cushion', cushion.CUSHION_STATE),
 ])
 
 
@@ -65,14 +69,16 @@ class PlantSheet(Parameters):
 class LinearPlant(PlantSheet):
     """A cylinder; generalised units N, m."""
 
-    drive: chambers.Cylinder
+    drive: drives.Cylinder
+    cushion_a: Cushion = nested(NoneCushion())
+    cushion_b: Cushion = nested(NoneCushion())
 
 
 @dataclass(frozen=True, kw_only=True)
 class RotaryPlant(PlantSheet):
     """A vane actuator; generalised units Nm, rad."""
 
-    drive: chambers.Vane
+    drive: drives.Vane
 
 
 def is_heated(sheet: PlantSheet) -> bool:
@@ -103,7 +109,17 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
             own_spool),
         block=block_valve.block_record(sheet.block_valve),
         hysteresis=hysteresis.hysteresis_record(sheet.valve, lands.x_max / lands.k_spool),
+        **_cushions(sheet),
         )], PLANT).view(np.recarray)
+
+
+def _cushions(sheet: LinearPlant | RotaryPlant) -> dict[str, np.record]:
+    """Return the `CUSHION` records of both ends; only a cylinder has any."""
+    if isinstance(sheet, RotaryPlant):
+        none = cushion.cushion_record(NoneCushion(), 0.0)
+        return {'cushion_a': none, 'cushion_b': none}
+    return {name: cushion.cushion_record(own, trapped_area(own, sheet.drive.bore_mm))
+            for name, own in (('cushion_a', sheet.cushion_a), ('cushion_b', sheet.cushion_b))}
 
 
 def rest_pressures(
@@ -154,7 +170,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     spool.spool_rates(y.spool, current, plant.valve.k_spool, plant.spool, rates.spool)
 
     if of_volumes:
-        v_a, v_b = chambers.volumes(s, plant.chambers)
+        v_a, v_b = cushion.port_volumes(y.cushion.end, s, plant)
         p_a, per_a, more_a = contents(
             y.chambers.cavity_a, v_a, y.chambers.p_a, plant.chambers)
         p_b, per_b, more_b = contents(
@@ -165,12 +181,17 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     q_a, q_b, q_p, q_t = rigid_lines(
         y, p_a, p_b, per_a, per_b, p_s, p_t, plant, rates, counts, powers)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
+    in_a, in_b, push, lost, kept, wider_a, wider_b = cushion.pass_spears(
+        y.cushion, s, v, (p_a, per_a, more_a, in_a), (p_b, per_b, more_b, in_b), plant,
+        rates.cushion)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
     if of_volumes:
         rates.chambers.p_a = rates.chambers.p_b = 0.0
         rates.chambers.cavity_a, rates.chambers.cavity_b = chambers.lack_rates(
             in_a - out_a, in_b - out_b, more_a, more_b, v, plant.chambers)
+        rates.chambers.cavity_a += wider_a
+        rates.chambers.cavity_b += wider_b
     else:
         rates.chambers.p_a = per_a * (in_a - out_a)
         rates.chambers.p_b = per_b * (in_b - out_b)
@@ -184,12 +205,14 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
     rates.mechanics.position = v
     rates.mechanics.velocity = (
-        chambers.hydraulic_force(p_a, p_b, plant.chambers) - f_friction - f_sensor + f_stop
+        chambers.hydraulic_force(p_a, p_b, plant.chambers) + push - f_friction - f_sensor
+        + f_stop
     ) / plant.mechanics.inertia
     if counts:
+        powers.throttling += lost
         powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
         powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
-        powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
+        powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b) + kept
         slip = v - v_load
         powers.friction = f_friction * v
         powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
@@ -198,8 +221,30 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
 
 
 @kernel
+def begin_volumes(y, plant):
+    """Begin a step of volumes of a `PLANT_STATE`  (C11)."""
+    s = y.mechanics.position
+    v_a, v_b = cushion.port_volumes(y.cushion.end, s, plant)
+    chambers.begin_volumes(y.chambers, v_a, v_b, plant.chambers)
+    cushion.begin_trapped(y.cushion, s, plant)
+
+
+@kernel
+def end_volumes(y, plant):
+    """End it: pressures and cavities of what the chambers, and what a spear traps, lack."""
+    s = y.mechanics.position
+    v_a, v_b = cushion.port_volumes(y.cushion.end, s, plant)
+    chambers.end_volumes(y.chambers, v_a, v_b, plant.chambers)
+    cushion.end_trapped(y.cushion, s, plant)
+
+
+@kernel
 def settle(y, plant):
-    """Apply to one `PLANT_STATE` after a step what no rate can: stops and plays."""
+    """
+    Apply to one `PLANT_STATE` after a step what no rate can.
+
+    The stops of spool and poppets, plays, and a spear that has entered or left.
+    """
     if plant.hysteresis.is_on > 0.0:
         hysteresis.remember(
             coil.coil_current(y.coil, plant.coil) / plant.coil.parallel, plant.hysteresis)
@@ -208,6 +253,8 @@ def settle(y, plant):
         block_spool(y.spool)
     if plant.block.is_on > 0.0:
         y.block.lift = min(max(y.block.lift, 0.0), 1.0)
+    if plant.cushion_a.is_on + plant.cushion_b.is_on > 0.0:
+        cushion.divide(y, plant)
 
 
 @kernel

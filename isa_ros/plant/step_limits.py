@@ -59,6 +59,8 @@ _KNOBS = (
     _Knob('drive.bore_mm', 'chambers', ('area_a', 'area_b'), True),
     _Knob('drive.displacement_cc_per_rad', 'chambers', ('area_a', 'area_b'), True),
     _Knob('oil.dead_volume_ml', 'chambers', ('dead_volume',), False),
+    _Knob('cushion_a.trapped_ml', 'cushion_a', ('dead',), False),
+    _Knob('cushion_b.trapped_ml', 'cushion_b', ('dead',), False),
     _Knob('oil.effective_bulk_modulus', 'chambers', ('beta',), True),
     _Knob('oil.cross_port_leakage', 'chambers', ('c_li',), True),
     _Knob('spool.natural_frequency_rad_per_s', 'spool', ('w_n',), True),
@@ -140,7 +142,7 @@ def _values(sheet: object) -> Iterator[tuple[_Knob, float]]:
     """Yield the knobs that a sheet has, and their values."""
     for knob in _KNOBS:
         part, name = knob.name.split('.')
-        value = getattr(getattr(sheet, part), name, 0.0)
+        value = getattr(getattr(sheet, part, None), name, 0.0)
         if value > 0.0:
             yield knob, value
 
@@ -210,6 +212,10 @@ def _matrices(plant: np.record, load: LoadSide) -> Iterator[NDArray[np.float64]]
     for place in (0.0, plant.chambers.stroke):
         for is_open in (False, True):
             yield _actuator(plant, load, place, is_open)
+        cushion = plant.cushion_a if place == 0.0 else plant.cushion_b
+        if cushion.is_on:
+            for is_open in (False, True):
+                yield _trapped(plant, load, place, is_open, cushion)
 
 
 def _coil(coil: np.record) -> NDArray[np.float64]:
@@ -252,6 +258,28 @@ def _actuator(
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
         [own.k_s * per_load, own.d_s * per_load, 0.0, 0.0, 0.0,
          -(own.k_s + load.stiffness) * per_load, -(own.d_s + load.damping) * per_load]])
+
+
+def _trapped(
+        plant: np.record, load: LoadSide, place: float, is_open: bool,
+        cushion: np.record) -> NDArray[np.float64]:
+    """Return `_actuator` of shut lands with the pressure behind a spear as last state  (C30)."""
+    oil, m = plant.chambers, plant.mechanics.inertia
+    found = np.zeros((8, 8))
+    found[:7, :7] = _actuator(plant, load, place, False)
+    port, sign, area = (3, 1.0, oil.area_a) if place == 0.0 else (4, -1.0, oil.area_b)
+    per, swept = oil.beta / cushion.dead, sign * cushion.area
+    wide = oil.beta / (oil.dead_volume - cushion.dead)      # of the port's side
+    found[port, :] *= wide * oil.dead_volume / oil.beta
+    found[port, 1] = -wide * sign * (area - cushion.area)
+    found[1, port] -= swept / m
+    found[1, 7], found[7, 1] = swept / m, -per * swept
+    link = FASTEST_RATE / (per + wide) if is_open else 0.0
+    found[7, 7] = -per * link
+    found[7, port] = per * link
+    found[port, port] -= wide * link
+    found[port, 7] = wide * link
+    return found
 
 
 def _conductances(valve: np.record, is_open: bool) -> tuple[float, float]:

@@ -16,7 +16,7 @@ from isa_ros.core.device import FORCE, POSITION
 from isa_ros.core.kernel import kernel
 import numpy as np
 
-END = 0.005     # of the stroke: nearer, the stop may take a force
+END = 0.005     # of the stroke: nearer, or in a cushion, the end may take a force
 MARGIN = 0.05   # of the range of the pressure sensors: a drop that drives a flow for certain
 ZERO = 0.01     # of that range: the lands of a fed valve do not leave both chambers as empty
 FED = 0.1       # of that range: a supply that feeds it
@@ -25,6 +25,7 @@ FILLING = 0.1   # s, until leakage at null has filled at least one of them from 
 SUPERVISION = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'),     # m2 | m3/rad
     ('flow_gain', 'f8'),                    # of a land at full opening, m3/s/sqrt(Pa)
+    ('end_a', 'f8'), ('end_b', 'f8'),       # the cushions' lengths, m
     ('stroke', 'f8'), ('force_range', 'f8'), ('pressure_range', 'f8'), ('current_range', 'f8'),
     ('spool_range', 'f8'),                  # of its sensor, m; 0: there is none
     ('spool_gain', 'f8'),                   # m of spool per A of the amplifier
@@ -149,9 +150,9 @@ def supervise(supply_pressure, own, state, supervised):
     error, distance = 0.0, 0.0
     target = measured.force
     if status.is_on != 0 and status.acting >= FORCE and own.follows_force != 0:
-        room = min(measured.position, own.stroke - measured.position)
+        room = min(measured.position - own.end_a, own.stroke - own.end_b - measured.position)
         target = force_target(state.force_reference, velocity, supply_pressure, own)
-        if room > END * own.stroke:     # else the stop takes a part that no sensor measures
+        if room > END * own.stroke:     # else stop or cushion take a part that no sensor measures
             error = abs(measured.force - target)
     if status.is_stopping:
         if status.flow.is_held:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from isa_ros.actuator.integration import flat, rk4_steps, scratch
 from isa_ros.actuator.sheet import actuator_record
@@ -32,7 +32,7 @@ class ClosedCylinder:
 
     def __init__(
             self, model: str, place: float, pressure: float, *, refill: bool = False,
-            free: bool = False, **values: float) -> None:
+            free: bool = False, **values: Any) -> None:
         sheet = actuator_sheet(model)
         for path, value in values.items():
             sheet = override(sheet, f'plant.{path.replace("__", ".")}', value)

@@ -76,7 +76,7 @@ speeds = [float(abs(own['ram.velocity']).max()) for own in (slow, free)]
 print(speeds[0] < 0.5 * speeds[1], speeds)
 """
 
-_CUSHION = '''"""A cushion at each end of the stroke: a throttle for what still moves outwards."""
+_BUFFER = '''"""A friction buffer at each end of the stroke, which drags at what moves outwards."""
 
 from dataclasses import dataclass
 
@@ -87,33 +87,33 @@ import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cushion(Parameters):
-    """Two cushions."""
+class Buffer(Parameters):
+    """Two buffers."""
 
     length: float = parameter('at each end; 0: none', 'm | rad', ge=0.0, le=0.1)
     damping: float = parameter('force per speed', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
 
 
-CUSHION = np.dtype([('length', 'f8'), ('damping', 'f8')])
+BUFFER = np.dtype([('length', 'f8'), ('damping', 'f8')])
 
 
-def cushion_record(sheet: Cushion) -> np.record:
-    """Return the `CUSHION` record of a sheet."""
-    return record(CUSHION, length=sheet.length, damping=sheet.damping)
+def buffer_record(sheet: Buffer) -> np.record:
+    """Return the `BUFFER` record of a sheet."""
+    return record(BUFFER, length=sheet.length, damping=sheet.damping)
 
 
 @kernel
-def cushion_force(s, v, stroke, cushion):
+def buffer_force(s, v, stroke, buffer):
     """Return the force against a motion towards an end, N or Nm."""
-    if s < cushion.length and v < 0.0 or s > stroke - cushion.length and v > 0.0:
-        return -cushion.damping * v
+    if s < buffer.length and v < 0.0 or s > stroke - buffer.length and v > 0.0:
+        return -buffer.damping * v
     return 0.0
 '''
 _HITS = """
 import isa_ros
 hard, soft = (isa_ros.load('rig_linear', {'name': 'out', 'duration_s': 0.4, 'tracks': {'ram': [
     {'t_s': 0.0, 'position': 0.05, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}
-    ).replace({'actuators.ram.parameters.plant.cushion': {'length': 0.01, 'damping': damping}}
+    ).replace({'actuators.ram.parameters.plant.buffer': {'length': 0.01, 'damping': damping}}
               ).simulate() for damping in (0.0, 2e4))
 arrivals = [float(own['ram.velocity'][own['ram.position'] > 0.0998][0]) for own in (hard, soft)]
 account = soft.accounts['ram']
@@ -244,23 +244,23 @@ def _load(copied: PatchedCopy) -> None:
 
 
 def _part(copied: PatchedCopy) -> None:
-    copied.add('isa_ros/plant/cushion.py', _CUSHION)
+    copied.add('isa_ros/plant/buffer.py', _BUFFER)
     plant = 'isa_ros/plant/plant.py'
-    copied.replace(plant, 'from isa_ros.plant.spool import',
-                   'from isa_ros.plant.cushion import (\n'
-                   '    Cushion, CUSHION, cushion_force, cushion_record)\n'
-                   'from isa_ros.plant.spool import')
+    copied.replace(plant, 'from isa_ros.plant.cavitation import',
+                   'from isa_ros.plant.buffer import (\n'
+                   '    Buffer, BUFFER, buffer_force, buffer_record)\n'
+                   'from isa_ros.plant.cavitation import')
     copied.replace(plant, "    ('thermal', thermal.THERMAL),\n",
-                   "    ('thermal', thermal.THERMAL),\n    ('cushion', CUSHION),\n")
+                   "    ('thermal', thermal.THERMAL),\n    ('buffer', BUFFER),\n")
     copied.replace(plant, '    thermal: NoneThermal | LumpedThermal',
-                   '    cushion: Cushion = nested(Cushion(length=0.0, damping=0.0))\n'
+                   '    buffer: Buffer = nested(Buffer(length=0.0, damping=0.0))\n'
                    '    thermal: NoneThermal | LumpedThermal')
     copied.replace(plant, '        thermal=thermal.thermal_record(',
-                   '        cushion=cushion_record(sheet.cushion),\n'
+                   '        buffer=buffer_record(sheet.buffer),\n'
                    '        thermal=thermal.thermal_record(')
     force = 'f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)\n'
-    copied.replace(plant, force, f'{force}    f_stop += cushion_force('
-                   's, v, plant.chambers.stroke, plant.cushion)\n')
+    copied.replace(plant, force, f'{force}    f_stop += buffer_force('
+                   's, v, plant.chambers.stroke, plant.buffer)\n')
 
 
 def _block(copied: PatchedCopy) -> None:
@@ -339,11 +339,11 @@ def test_a_load_is_a_set_a_force_and_values(extended: Extended) -> None:
 
 @pytest.mark.slow
 def test_a_part_of_the_plant_is_a_file_and_its_term(extended: Extended) -> None:
-    """A cushion: it lessens the impact at the end; the energy account closes over it."""
+    """Buffers: they lessen the impact at the ends; the energy account closes over it."""
     copied = extended.copied
     assert len(extended.part) == 2
     assert copied.python(_HITS) == 'True True True\n'
-    assert 'plant.cushion.damping ' in copied.isa('params', 'isa_v5')
+    assert 'plant.buffer.damping ' in copied.isa('params', 'isa_v5')
 
 
 @pytest.mark.slow

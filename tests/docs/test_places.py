@@ -15,7 +15,7 @@ from tests.docs.patched_copy import files_of, names_of, PatchedCopy, rows_of_the
 from tests.ros.conftest import domain  # noqa: F401
 
 CASES = {
-    'part of the plant, such as a cushioned end of the stroke':
+    'part of the plant, such as a friction buffer at each end':
         'test_kernel_extensions.test_a_part_of_the_plant_is_a_file_and_its_term',
     'control block': 'test_kernel_extensions.test_a_control_block_is_a_file_a_kind_and_a_branch',
     'middleware of the bench': 'test_places.test_a_middleware_is_a_file_and_a_line',

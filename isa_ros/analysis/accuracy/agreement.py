@@ -21,7 +21,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record
-from isa_ros.plant.chambers import begin_volumes, elastances, end_volumes
+from isa_ros.plant.chambers import begin_volumes, elastances, end_volumes, volumes
 from isa_ros.plant.mechanics import sensor_force
 from isa_ros.plant.plant import rest_pressures
 import numpy as np
@@ -117,12 +117,12 @@ class OpenLoopRig:
         absolute, rows = tolerance * self._y[0], []
         self._y[0] = self._start
         for current in piece.currents:
-            begin_volumes(own.chambers, own.mechanics.position, oil)
+            begin_volumes(own.chambers, *volumes(own.mechanics.position, oil), oil)
             solved = solve_ivp(
                 self._slopes, (0.0, ROW), self._y[0].copy(), method='DOP853', args=(current,),
                 rtol=tolerance, atol=absolute)
             self._y[0] = solved.y[:, -1]
-            end_volumes(own.chambers, own.mechanics.position, oil)
+            end_volumes(own.chambers, *volumes(own.mechanics.position, oil), oil)
             rows.append(self._y[0].copy())
         return np.array(rows)
 

@@ -17,6 +17,7 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.plant import chambers, servo_valve, spool, valve_record
+from isa_ros.plant.drives import Cylinder
 import numpy as np
 from scipy.integrate import DOP853
 
@@ -48,7 +49,8 @@ def cylinder_record() -> np.recarray:
     record = np.zeros(1, CYLINDER).view(np.recarray)
     case = record[0]
     case.chambers = chambers.chambers_record(
-        chambers.Cylinder(bore_mm=21.5, rod_mm=12.0, stroke_mm=100.0, rated_pressure_mpa=20.7),
+        Cylinder(bore_mm=21.5, rod_mm=12.0, cap_rod_mm=0.0, stroke_mm=100.0,
+                 rated_pressure_mpa=20.7),
         chambers.Oil(effective_bulk_modulus=7e8, dead_volume_ml=1.0, cross_port_leakage=1e-13,
                      aeration_pressure_kpa=5.0, vapour_pressure_kpa=1.0, temperature_celsius=40.0))
     valve = case.valve
