@@ -8,8 +8,8 @@ from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.recorded_run import recorded_run
 from isa_ros.core.accounts import (
-    Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, RELIEF, STORED,
-    THROTTLING, WORK)
+    Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, PUMP, RELIEF,
+    RETURNED, STORED, SUPPLY_RELIEF, THROTTLING, WORK)
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
 from isa_ros.run import diagnostics as run_diagnostics
@@ -17,6 +17,7 @@ from isa_ros.text.table import aligned, digits
 from msg_adapters import diagnostics
 from msg_adapters.cdr import CdrError
 
+PARTS_HEADER = ('part of a circuit', 'oil in, l', 'out, l', 'given, J', 'lost, J', 'stored, J')
 HEADER = ('', 'oil, l', 'mean, W', 'peak, W', 'energy, J', 'valve leakage', 'throttling',
           'friction', 'work', 'rest')
 _COLUMNS = (LEAKAGE,), (THROTTLING,), (FRICTION,), (WORK,), (CROSS_PORT, RELIEF, DAMPING, STORED)
@@ -71,12 +72,29 @@ def energy_text(bag: Path) -> str:
     accounts = recorded_accounts(Bag(bag))
     if accounts is None:
         return ''
-    return '\n'.join([*aligned(energy_table(accounts), 'lr'), energy_legend(accounts)])
+    parts = parts_table(accounts)
+    return '\n'.join([*aligned(energy_table(accounts), 'lr'), energy_legend(accounts),
+                      *(['', *aligned(parts, 'lr')] if parts else [])])
 
 
 def energy_table(accounts: Accounts) -> list[tuple[str, ...]]:
-    """Return the rows of the table, the header first; a supply has no shares."""
-    return [HEADER, *((name, *_cells(account)) for name, account in accounts.by_name.items())]
+    """Return the rows of the table, the header first; a supply has no shares, a part no row."""
+    return [HEADER, *((name, *_cells(account)) for name, account in accounts.by_name.items()
+                      if not _is_part(name, accounts))]
+
+
+def parts_table(accounts: Accounts) -> list[tuple[str, ...]]:
+    """Return the rows of the parts of circuits, the header first; empty without circuits."""
+    rows = [(name, *(digits(account[entry.key], 3) for entry in (
+        OIL, RETURNED, PUMP, SUPPLY_RELIEF, STORED)))
+        for name, account in accounts.by_name.items() if _is_part(name, accounts)]
+    return [PARTS_HEADER, *rows] if rows else []
+
+
+def _is_part(name: str, accounts: Accounts) -> bool:
+    """Return whether an account is that of a part of a circuit."""
+    circuit = accounts.by_name.get(name.rpartition('/')[0])
+    return circuit is not None and LEAKAGE.key not in circuit
 
 
 def energy_legend(accounts: Accounts) -> str:

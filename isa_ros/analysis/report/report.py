@@ -1,12 +1,13 @@
 """A run on one page: its figures and its extreme values, from the bag alone."""
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import html
 from pathlib import Path
 
 from isa_ros.analysis.report.ending import ending
-from isa_ros.analysis.report.energy import energy_legend, energy_table, recorded_accounts
+from isa_ros.analysis.report.energy import (
+    energy_legend, energy_table, parts_table, recorded_accounts)
 from isa_ros.analysis.report.events import event_rows, recorded_events
 from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
@@ -132,9 +133,14 @@ def _events(events: list[Event]) -> str:
     """Return the table of what the devices did; one line if there is nothing."""
     if not events:
         return '<h2>Events</h2><p>No condition warned or tripped, no state changed.</p>'
-    head, *body = [[html.escape(cell) for cell in row] for row in event_rows(events)]
+    return f'<h2>Events</h2>{_table(event_rows(events))}'
+
+
+def _table(cells: Sequence[Sequence[str]]) -> str:
+    """Return a table, its header first."""
+    head, *body = [[html.escape(cell) for cell in row] for row in cells]
     rows = ''.join(f'<tr><td>{"</td><td>".join(row)}</td></tr>' for row in body)
-    return f'<h2>Events</h2><table><tr><th>{"</th><th>".join(head)}</th></tr>{rows}</table>'
+    return f'<table><tr><th>{"</th><th>".join(head)}</th></tr>{rows}</table>'
 
 
 def _energy(bag: Path) -> str:
@@ -142,10 +148,9 @@ def _energy(bag: Path) -> str:
     accounts = recorded_accounts(Bag(bag))
     if accounts is None:
         return ''
-    head, *body = [[html.escape(cell) for cell in row] for row in energy_table(accounts)]
-    rows = ''.join(f'<tr><td>{"</td><td>".join(row)}</td></tr>' for row in body)
-    return (f'<h2>Oil and energy</h2><table><tr><th>{"</th><th>".join(head)}</th></tr>{rows}'
-            f'</table><p>{html.escape(energy_legend(accounts))}</p>')
+    parts = parts_table(accounts)
+    return (f'<h2>Oil and energy</h2>{_table(energy_table(accounts))}'
+            f'<p>{html.escape(energy_legend(accounts))}</p>{_table(parts) if parts else ""}')
 
 
 def _rows(values: list[tuple[str, float, float, str]]) -> str:
