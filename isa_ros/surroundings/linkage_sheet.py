@@ -17,6 +17,8 @@ from isa_ros.surroundings import linkage as kernels
 import numpy as np
 
 SHORTEST_LEVER = 2e-3  # m (or 1 of a rotary actuator): ports divide by it
+LEVER_RULE = (f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the range: the mass and the '
+              'stiffness that an actuator moves there grow with its inverse square')
 CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be regular
 
 
@@ -47,10 +49,10 @@ class Joint(Parameters):
                 raise ParameterError(
                     f'{where} cannot be assembled at joint angle {angle:.2f} deg, must close from '
                     f'{self.low_deg:g} to {self.high_deg:g} deg')
-            if lever * levers[0] < SHORTEST_LEVER * SHORTEST_LEVER:
+            if is_short(lever, levers[0]):
                 raise ParameterError(
                     f'{where}: lever = {1e3 * lever:.2f} mm at joint angle {angle:.2f} deg, must '
-                    f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the whole range')
+                    f'{LEVER_RULE}')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,6 +81,11 @@ class FourBar(Joint):
     jk_mm: float = parameter("K to the cylinder's pin C along the thigh", 'mm', gt=0.0, le=2e3)
     cj_mm: float = parameter("C off the thigh's axis", 'mm', ge=-1e3, le=1e3)
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=2e3)
+
+
+def is_short(lever: float, first: float) -> bool:
+    """Return whether a lever is below the bound, or has not the sign of the ``first`` one."""
+    return lever * first <= 0.0 or abs(lever) < SHORTEST_LEVER
 
 
 OneJointLinkage = Direct | SliderCrank | FourBar

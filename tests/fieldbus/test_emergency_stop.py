@@ -82,6 +82,29 @@ def test_a_drive_that_is_not_yet_enabled_in_operation_leaves_it():
     assert states[-1] == 'SWITCH_ON_DISABLED' and rig.sample['device_state'] == DISABLED
 
 
+def test_a_device_of_cia_408_that_is_not_yet_enabled_does_not_stay_in_hold():
+    """The line opens in the tick that its master asks for hold in; nothing enables the REU."""
+    rig = Rig(profile='cia408')
+    master = Master(rig)
+    master.cycle(0b0001)
+    rig.simulation.emergency_stop()
+    for _ in range(3):
+        word = master.cycle(0b0011)
+    assert rig.sample['device_state'] == DISABLED and word & 0xF == 0b1001
+
+
+def test_shutdown_is_not_obeyed_for_a_moment_while_a_stop_is_open():
+    """Not even between the tick's command and its sample, when a mailbox may ask."""
+    rig = Rig()
+    master = Master(rig)
+    master.cycle(0)
+    rig.simulation.emergency_stop()
+    master.cycle(0)
+    rig.device.receive(0x1610, SHUTDOWN.to_bytes(rig.device.size(0x1610), 'little'))
+    rig.device.fill_command(rig.commands[0])
+    assert state(master.upload(0x6041)) == 'SWITCH_ON_DISABLED'
+
+
 def test_a_fault_keeps_its_code_beside_the_stop_and_the_last_end_is_told():
     rig = Rig()
     master = enabled(rig)
@@ -180,4 +203,16 @@ def test_a_load_that_does_not_stand_is_waited_for_by_two_seconds():
     sample['device_state'] = ENABLED
     axis.take_sample(sample)
     rest.watch()
+    assert not rest.is_over
+
+
+def test_an_reu_that_ends_its_stop_by_itself_is_not_ended_by_the_drive():
+    rig = Rig(changes={'actuators.ram.parameters.reu.device.quick_stop': 'ramp'})
+    axis = rig.device._axis
+    rest = Rest(axis)
+    sample = np.zeros(1, SAMPLE)[0]
+    sample['device_state'] = QUICK_STOP
+    for _ in range(2100):
+        axis.take_sample(sample)
+        rest.watch()
     assert not rest.is_over

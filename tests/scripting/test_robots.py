@@ -74,6 +74,34 @@ def test_the_bag_has_the_topics_of_namespaces_and_replays(result, bag):
     assert replay(Bag(bag)).is_equal
 
 
+def test_what_is_recorded_is_chosen_by_the_topics_of_namespaces(tmp_path):
+    """A star stands for any text, also for robot and actuator; and the bag replays."""
+    record = {'leave_out': ['/r1/*/references', '/r2/haa/*'],
+              'decimate': {'/*/kfe/pressure_?': 8, '/r1/joint_states': 4}}
+    run = isa_ros.load(PAIR | {'record': record}, HOP)
+    bag = Bag(run.simulate().save(tmp_path / 'bag'))
+    counts = {}
+    for message in bag.messages():
+        counts[message.topic] = counts.get(message.topic, 0) + 1
+    assert not [topic for topic in counts
+                if topic.startswith('/r1/') and topic.endswith('/references')]
+    assert counts['/r2/kfe/references'] == TICKS + 1
+    assert {topic for topic in counts if topic.startswith('/r2/haa/')} <= {
+        '/r2/haa/applied_setpoint', '/r2/haa/applied_parameters'}      # inputs of a replay
+    for robot in ('r1', 'r2'):
+        assert counts[f'/{robot}/kfe/pressure_a'] == TICKS // 8 + 1
+        assert counts[f'/{robot}/hfe/pressure_a'] == TICKS + 1
+    assert (counts['/r1/joint_states'], counts['/r2/joint_states']) == (TICKS // 4 + 1, TICKS + 1)
+    assert replay(bag).is_equal
+
+
+def test_a_filter_by_the_names_of_a_robots_own_file_matches_no_topic(bag):
+    record = isa_ros.load(PAIR | {'record': {
+        'leave_out': ['/kfe/references']}}).configuration.record
+    with pytest.raises(ConfigError, match="record.leave_out = '/kfe/references' matches no topic"):
+        record.refuse_misfits(Bag(bag).types, 'pair.yaml')
+
+
 def test_the_report_of_a_bag_draws_each_actuator(bag, tmp_path):
     names = {path.name for path in write_report(bag, tmp_path / 'page.html')}
     assert {'page_r1_kfe.png', 'page_r2_kfe.png', 'page_r1.png'} <= names

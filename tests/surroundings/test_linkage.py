@@ -4,6 +4,7 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.surroundings import linkage
+from isa_ros.surroundings.linkage_sheet import is_short, SHORTEST_LEVER
 import numpy as np
 import pytest
 
@@ -109,3 +110,11 @@ def test_compiled_kernel_equals_its_python_source(name, share):
               linkage.FOUR_BAR: linkage.four_bar}[int(row['kind'])]
     assert kernel(q, row) == kernel.py_func(q, row)
     assert kernel(q, row) == linkage.actuator_coordinate(q, row)
+
+
+def test_a_lever_is_short_by_its_own_length_however_long_another_one_is():
+    """It was compared by the product of both: 0.1 mm passed where the first lever is 40 mm."""
+    assert not is_short(SHORTEST_LEVER, 40e-3) and not is_short(-SHORTEST_LEVER, -40e-3)
+    for lever, first in ((1.9e-3, 40e-3), (-40e-3, 40e-3), (1e-4, 40e-3), (0.0, 40e-3)):
+        assert is_short(lever, first)
+        assert is_short(-lever, -first)

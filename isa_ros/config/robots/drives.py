@@ -1,6 +1,6 @@
 """The drives of a robot in a run file: which actuator moves which joint, by which linkage."""
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 import math
 from typing import Any
@@ -26,6 +26,8 @@ from isa_ros.surroundings.linkage_sheet import (
     Joint, linkage_record, OneJointLinkage)
 import numpy as np
 
+_OF_CYLINDER = ('base', 'rod', 'range', 'base_mm', 'rod_mm')
+"""Keys that no other linkage has."""
 _RANGE_DIGITS = 9       # of the range of a joint in deg: 1e-9 deg
 _RANGE_ROUNDING = 1e-6  # deg or mm by which a range may exceed that of the URDF
 
@@ -60,8 +62,8 @@ class DriveConfig:
     """deg or mm of the joint that a cylinder moves; None: that of the URDF."""
 
 
-def _range(value: Any, place: Place) -> tuple[float, float]:
-    check(str(place), value, {'doc': 'lower and upper end', 'unit': 'deg | mm',
+def _range(value: Any, place: Place, unit: str = 'deg | mm') -> tuple[float, float]:
+    check(str(place), value, {'doc': 'lower and upper end', 'unit': unit,
                               'length': (2, 2), 'bounds': {'ge': -1e5, 'le': 1e5}})
     low, high = map(float, value)
     if not low < high:
@@ -130,10 +132,12 @@ def drives_of(
         if kind == 'cylinder':
             drive = _cylinder(name, str(actuator), own, section, tree, below)
         else:
-            for key in ('base', 'rod', 'range'):
+            for key in _OF_CYLINDER:
                 if key in own:
-                    raise ConfigError(f'{below / key} is not used: only a cylinder has it')
-            joint = _joint_of(own, name, joints, below)
+                    raise ConfigError(
+                        f'{below / "linkage"} = {kind}, must be cylinder: {key} is not used '
+                        'otherwise')
+            joint = _joint_of(own, name, joints, sections, below)
             section = _with_range(section, joint, below)
             drive = DriveConfig(name=name, actuator=str(actuator), joint=joint.joint.name,
                                 linkage=build_one_of(Linkage, section, below))
@@ -190,13 +194,18 @@ def _like(name: Any, linkages: Mapping[str, Section], place: Place) -> Section:
 
 
 def _joint_of(
-        own: YamlTree, name: str, joints: Mapping[str, RobotLink], place: Place) -> RobotLink:
+        own: YamlTree, name: str, joints: Mapping[str, RobotLink], drives: Container[str],
+        place: Place) -> RobotLink:
     """Return the link whose joint a drive moves."""
     joint = own.get('joint', name)
     if not isinstance(joint, str) or joint not in joints:
         raise ConfigError(
             f'{place / "joint" if "joint" in own else place}: {joint!r} moves nothing: it is not '
             f'a joint of the URDF that turns or slides; {alternatives(str(joint), list(joints))}')
+    if name in joints and joint != name and joint in drives:
+        raise ConfigError(
+            f'{place / "joint"} = {joint!r}, which the drive {joint} moves; {name} is a joint of its '
+            'own, which nothing would move')
     if joints[joint].joint.kind == 'prismatic':
         raise ConfigError(
             f'{place}: the joint {joint} slides, its drive must be of the linkage cylinder, '
@@ -257,7 +266,16 @@ def _cylinder(
     return DriveConfig(
         name=name, actuator=actuator, linkage=build_one_of(Linkage, section, place),
         base=ends[0], rod=ends[1],
-        joint_range=None if own.get('range') is None else _range(own['range'], place / 'range'))
+        joint_range=None if own.get('range') is None else _range(
+            own['range'], place / 'range', _unit_between(tree, *(frames[end].link for end in ends))))
+
+
+def _unit_between(tree: Tree, a: int, b: int) -> str:
+    """Return the unit of the joint between two links of the tree, of several joints both units."""
+    def path(link: int) -> set[int]:
+        return set() if link <= 0 else {link, *path(tree.links[link].parent)}
+    kinds = {tree.links[link].joint.kind for link in path(a) ^ path(b)}
+    return {('prismatic',): 'mm', ('revolute',): 'deg'}.get(tuple(kinds), 'deg | mm')
 
 
 def robot_drive(own: DriveConfig, tree: Tree) -> RobotDrive:

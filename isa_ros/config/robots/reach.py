@@ -9,7 +9,8 @@ from isa_ros.config.text.sections import Place
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import RobotDrive, RobotSheet
-from isa_ros.surroundings.linkage_sheet import CHECKED_ANGLES, Joint, SHORTEST_LEVER
+from isa_ros.surroundings.linkage_sheet import (
+    CHECKED_ANGLES, is_short, Joint, LEVER_RULE, SHORTEST_LEVER)
 import numpy as np
 from numpy.typing import NDArray
 
@@ -107,13 +108,12 @@ def refuse_lever(
                 f'{1e3 * SHORTEST_LEVER:g} mm')
         return
     for q, lever in zip(reach.coordinates, reach.levers):
-        if lever * reach.levers[0] < SHORTEST_LEVER * SHORTEST_LEVER:
+        if is_short(float(lever), float(reach.levers[0])):
             raise ConfigError(
                 f'{place}: its lever is {1e3 * lever:.2f} mm at {reach.joint} = '
-                f'{q / reach.scale:.2f} {reach.unit}, a dead centre or close to it; it must keep '
-                f'its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the range '
+                f'{q / reach.scale:.2f} {reach.unit}, a dead centre or close to it; from '
                 f'{reach.coordinates[0] / reach.scale:g} to '
-                f'{reach.coordinates[-1] / reach.scale:g} {reach.unit}')
+                f'{reach.coordinates[-1] / reach.scale:g} {reach.unit} it must {LEVER_RULE}')
 
 
 def refuse_stroke(reach: Reach, stroke: float, is_rotary: bool, where: str) -> None:

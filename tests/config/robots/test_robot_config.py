@@ -1,5 +1,6 @@
 """Robots of run files: their resolved text, their linkages, and what is refused."""
 
+import math
 from pathlib import Path
 import shutil
 
@@ -273,12 +274,18 @@ LEG = 'body.drives.knee'
      'pillar and rod = pillar'),
     ('crane', {f'{CRANE}.rod': 'bracket_3'},
      "body.drives.lift.rod = 'bracket_3' is not a link of the URDF; did you mean bracket_2"),
+    ('two_joint_leg', {'body.drives.knee.linkage': 'direct'},
+     'body.drives.knee.linkage = direct, must be cylinder: base is not used otherwise'),
+    ('two_joint_leg', {'body.drives.hip.joint': 'knee'},
+     "body.drives.hip.joint = 'knee', which the drive knee moves; hip is a joint of its own, which"),
+    ('two_joint_leg', {'body.drives.knee.range': [math.nan, 1.0]},
+     'body.drives.knee.range[0] = nan deg, must be finite'),
     ('crane', {f'{CRANE}.joint': 'lift'}, 'body.drives.lift.joint is not used: a cylinder moves '),
     ('crane', {f'{CRANE}.high_deg': 60.0},
      'body.drives.lift.high_deg is not used: the range of the joint that a cylinder moves is '),
     ('crane', {f'{CRANE}.low_deg': 0.0}, 'body.drives.lift.low_deg is not used: the range of '),
     ('crane', {'body.drives.tilt.range': [-90.0, 0.0]},
-     'body.drives.tilt.range is not used: only a cylinder has it'),
+     'body.drives.tilt.linkage = four_bar, must be cylinder: range is not used otherwise'),
     ('crane', {f'{CRANE}.range': [-30.0, 60.0]},
      'body.drives.lift.range = -30 to 60, must be within the -24.0642 to 89.9544 deg of '),
     ('crane', {'body.drives.tilt.high_deg': 5.0},

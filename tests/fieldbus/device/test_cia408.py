@@ -258,3 +258,27 @@ def test_what_is_disabled_from_elsewhere_stays_so_until_h_falls(rig):
         assert state(master.cycle(ACTIVE)) == 'DISABLED'
     master.cycle(DISABLED)
     assert [state(master.cycle(ACTIVE)) for _ in range(2)] == ['HOLD', 'ACTIVE']
+
+
+def test_a_lost_bus_enables_nothing_that_was_disabled(rig):
+    """Its reaction holds what is held: outputs that are off stay off."""
+    master = Master(rig)
+    for word in (DISABLED, DISABLED):
+        master.cycle(word)
+    rig.device.end_operation(is_lost=True)
+    for _ in range(5):
+        rig.tick()
+        assert rig.sample['device_state'] == 1
+    assert state(master.upload(0x6041)) == 'FAULT_DISABLED'
+
+
+def test_a_bus_that_is_lost_while_the_reu_initialises_leaves_it_disabled():
+    """It was to be enabled once it is ready; nobody commands it then."""
+    rig = rig_of(changes={'actuators.ram.parameters.reu.device.initialisation_ms': 20.0})
+    master = Master(rig)
+    for word in (DISABLED, HOLD, HOLD):
+        master.cycle(word)
+    rig.device.end_operation(is_lost=True)
+    for _ in range(40):
+        rig.tick()
+    assert rig.sample['device_state'] == 1
