@@ -17,8 +17,8 @@ from isa_ros.surroundings import linkage as kernels
 import numpy as np
 
 SHORTEST_LEVER = 2e-3  # m (or 1 of a rotary actuator): ports divide by it
-LEVER_RULE = (f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the range: the mass and the '
-              'stiffness that an actuator moves there grow with its inverse square')
+LEVER_RULE = (f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the range: the mass and '
+              'the stiffness that an actuator moves there grow with its inverse square')
 CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be regular
 
 

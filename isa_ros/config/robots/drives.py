@@ -204,8 +204,8 @@ def _joint_of(
             f'a joint of the URDF that turns or slides; {alternatives(str(joint), list(joints))}')
     if name in joints and joint != name and joint in drives:
         raise ConfigError(
-            f'{place / "joint"} = {joint!r}, which the drive {joint} moves; {name} is a joint of its '
-            'own, which nothing would move')
+            f'{place / "joint"} = {joint!r}, which the drive {joint} moves; {name} is a joint of '
+            'its own, which nothing would move')
     if joints[joint].joint.kind == 'prismatic':
         raise ConfigError(
             f'{place}: the joint {joint} slides, its drive must be of the linkage cylinder, '
@@ -267,7 +267,8 @@ def _cylinder(
         name=name, actuator=actuator, linkage=build_one_of(Linkage, section, place),
         base=ends[0], rod=ends[1],
         joint_range=None if own.get('range') is None else _range(
-            own['range'], place / 'range', _unit_between(tree, *(frames[end].link for end in ends))))
+            own['range'], place / 'range',
+            _unit_between(tree, frames[ends[0]].link, frames[ends[1]].link)))
 
 
 def _unit_between(tree: Tree, a: int, b: int) -> str:
@@ -275,7 +276,7 @@ def _unit_between(tree: Tree, a: int, b: int) -> str:
     def path(link: int) -> set[int]:
         return set() if link <= 0 else {link, *path(tree.links[link].parent)}
     kinds = {tree.links[link].joint.kind for link in path(a) ^ path(b)}
-    return {('prismatic',): 'mm', ('revolute',): 'deg'}.get(tuple(kinds), 'deg | mm')
+    return 'mm' if kinds == {'prismatic'} else 'deg' if kinds == {'revolute'} else 'deg | mm'
 
 
 def robot_drive(own: DriveConfig, tree: Tree) -> RobotDrive:

@@ -277,7 +277,7 @@ LEG = 'body.drives.knee'
     ('two_joint_leg', {'body.drives.knee.linkage': 'direct'},
      'body.drives.knee.linkage = direct, must be cylinder: base is not used otherwise'),
     ('two_joint_leg', {'body.drives.hip.joint': 'knee'},
-     "body.drives.hip.joint = 'knee', which the drive knee moves; hip is a joint of its own, which"),
+     "body.drives.hip.joint = 'knee', which the drive knee moves; hip is a joint of its own"),
     ('two_joint_leg', {'body.drives.knee.range': [math.nan, 1.0]},
      'body.drives.knee.range[0] = nan deg, must be finite'),
     ('crane', {f'{CRANE}.joint': 'lift'}, 'body.drives.lift.joint is not used: a cylinder moves '),
