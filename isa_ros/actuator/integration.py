@@ -10,7 +10,7 @@ states need four.
 
 import math
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.loads.forces import LOAD_STATE, own_load_force
 from isa_ros.loads.port import load_acceleration
 from isa_ros.plant.chambers import is_of_volumes
@@ -102,7 +102,7 @@ def add_powers(weight, y, k):
         y[0, j] += weight * k[0, j]
 
 
-@kernel
+@part_of_kernel
 def stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k):
     """Write the four rates of a classical Runge-Kutta step of ``h`` seconds."""
     write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
@@ -126,7 +126,7 @@ def is_torn(h, state, rates):
             or state.p_b + h / 6.0 * (k_1.p_b + 2.0 * (k_2.p_b + k_3.p_b) + k_4.p_b) < 0.0)
 
 
-@kernel
+@part_of_kernel
 def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
     """
     Advance ``continuous[0]`` by one classical Runge-Kutta step of ``h`` seconds.

@@ -13,7 +13,7 @@ from isa_ros.actuator.integration import (
     COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import exchange_frames, hand_over, LINK, receive_samples, send_sample
 from isa_ros.actuator.states import write_states
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
 from isa_ros.plant.block_valve import drive_block
@@ -60,7 +60,7 @@ def write_sample(plant, reu, sample):
     write_device(reu.status, sample)
 
 
-@kernel
+@part_of_kernel
 def loops_and_plant(
         step, tau, port, actuator, continuous, rates, y, k, weight, reu_state, channels, thermal):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
@@ -121,7 +121,7 @@ def take_port(incoming, is_shared, port, state):
         state.load.velocity = port.v0
 
 
-@kernel
+@part_of_kernel
 def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_state, channels,
              reply, sample, thermal, plays, link, memory):
     """

@@ -6,7 +6,7 @@ from typing import Any
 
 from isa_ros.core import kernel as kernels
 from isa_ros.core import kernel_cache
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, part_of_kernel
 import numba
 import pytest
 
@@ -70,3 +70,20 @@ def test_a_numba_that_cannot_load_what_it_kept_is_one_line(make, monkeypatch, ca
 def test_without_compiling_a_kernel_is_the_function(monkeypatch):
     monkeypatch.setattr(numba.config, 'DISABLE_JIT', True)
     assert kernel(twice) is twice
+
+
+@part_of_kernel
+def thrice(x):
+    return x + x + x
+
+
+@kernel
+def with_part(x):
+    return thrice(x) + 1
+
+
+def test_a_part_is_compiled_with_its_kernel_and_alone_only_where_python_calls_it():
+    assert with_part(3) == 10
+    assert thrice.signatures == []
+    assert thrice(2.5) == 7.5
+    assert len(thrice.signatures) == 1

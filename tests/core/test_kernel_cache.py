@@ -25,8 +25,8 @@ def caller(x):
     return twice(x)
 """
 CALLEE = """
-from isa_ros.core.kernel import kernel
-@kernel
+from isa_ros.core.kernel import {decorator}
+@{decorator}
 def twice(x):
     return {factor} * x
 """
@@ -39,6 +39,11 @@ LOADED = (
 THEN_COMPILED = f'{LOADED}; from isa_ros.caller import caller; print(caller(2.0))'
 
 
+def callee(factor: float = 2.0, decorator: str = 'kernel') -> str:
+    """Return the module of the callee."""
+    return CALLEE.format(factor=factor, decorator=decorator)
+
+
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
     """Return a package with the kernels `caller` and `twice` and the core of this one."""
@@ -46,7 +51,7 @@ def package(tmp_path: Path) -> Path:
     for name in ('__init__.py', 'errors.py'):
         shutil.copy(PACKAGE / name, tmp_path / 'isa_ros')
     (tmp_path / 'isa_ros' / 'caller.py').write_text(CALLER)
-    (tmp_path / 'isa_ros' / 'callee.py').write_text(CALLEE.format(factor=2.0))
+    (tmp_path / 'isa_ros' / 'callee.py').write_text(callee())
     return tmp_path
 
 
@@ -61,12 +66,15 @@ def called(package: Path, program: str = MAIN, **environment: str) -> tuple[str,
     return done.stdout, done.stderr
 
 
-def test_an_edit_is_noticed_in_a_directory_of_the_user_too(package: Path) -> None:
+@pytest.mark.parametrize('decorator', ['kernel', 'part_of_kernel'])
+def test_an_edit_is_noticed_in_a_directory_of_the_user_too(
+        package: Path, decorator: str) -> None:
     """Only the callee is edited, and numba looks at the caller's file alone; `CACHE_DIR` stays."""
     own = str(package / 'own')
+    (package / 'isa_ros' / 'callee.py').write_text(callee(2.0, decorator))
     assert called(package, NUMBA_CACHE_DIR=own) == (f'2.0 {own}\n', '')
     assert [path.name for path in (package / 'own').iterdir()] == ['isa_ros']
-    (package / 'isa_ros' / 'callee.py').write_text(CALLEE.format(factor=3.0))
+    (package / 'isa_ros' / 'callee.py').write_text(callee(3.0, decorator))
     assert called(package, NUMBA_CACHE_DIR=own) == (f'3.0 {own}\n', '')
 
 
