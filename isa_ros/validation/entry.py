@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 import math
 import re
+import textwrap
 
 from isa_ros.paper.printed import Printed
 from matplotlib.figure import Figure
@@ -25,6 +26,7 @@ AS_READ = 'as read, not as printed'
 NOT_REACHED = 'not reached'
 VERDICTS = (REACHED, AS_READ, NOT_REACHED)
 REGRESSION = 2.0    # percent
+_LETTERS = 14       # of a title, to an inch of the figure
 _READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
 
 
@@ -150,6 +152,12 @@ class Drawing:
     name: str
     caption: str
     figure: Figure
+
+    def titled(self) -> Figure:
+        """Return the figure with the caption above it, for where it is shown alone."""
+        width = round(_LETTERS * self.figure.get_figwidth())
+        self.figure.suptitle(textwrap.fill(self.caption, width), fontsize='small')
+        return self.figure
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ def run_group(group: Group) -> GroupResult:
     if len(set(names)) != len(names):
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
     return GroupResult(group.name, group.title, findings.entries, tuple(
-        Picture(drawing.name, drawing.caption, png(drawing.figure))
+        Picture(drawing.name, drawing.caption, png(drawing.titled()))
         for drawing in findings.drawings), findings.observations)
 
 

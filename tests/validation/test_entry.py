@@ -4,8 +4,9 @@ import math
 
 from isa_ros.paper.printed import cell, statement
 from isa_ros.validation.entry import (
-    around, as_printed, AS_READ, at_least, at_most, Entry, INPUT, NOT_REACHED, OWN, PAPER,
+    around, as_printed, AS_READ, at_least, at_most, Drawing, Entry, INPUT, NOT_REACHED, OWN, PAPER,
     REACHED)
+from isa_ros.validation.plots import stacked
 import pytest
 from tests.validation.groups import entry
 
@@ -84,3 +85,12 @@ def test_intervals():
     assert around(10.0, by=1.0, percent=10.0) == (8.0, 12.0)
     assert around(-10.0, percent=10.0) == (-11.0, -9.0)
     assert at_least(3.0) == (3.0, math.inf) and at_most(3.0) == (-math.inf, 3.0)
+
+
+def test_a_figure_that_is_shown_alone_has_its_caption_above_it():
+    """In lines that fit its width."""
+    figure, _ = stacked('time, s', 'force, N')
+    caption = 'Force steps of the knee with the foot on wood and on rubber, as Fig 14. ' * 2
+    drawn = Drawing('fig_14', caption, figure).titled()
+    lines = drawn.get_suptitle().splitlines()
+    assert ' '.join(lines) == caption.strip() and len(lines) == 2

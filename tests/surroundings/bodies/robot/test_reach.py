@@ -141,3 +141,21 @@ def test_the_response_of_hard_ground_is_cut_to_what_a_tick_resolves() -> None:
     robot.ports(ports)
     assert ports['stiffness'][0] == pytest.approx(math.pi ** 2 * 1e6, rel=1e-12, abs=0.0)
     assert ports['damping'][0] == 1e3
+
+
+def test_a_pressed_contact_answers_no_cylinder_at_its_dead_centre() -> None:
+    """There 1/m is 0 to its rounding: so are the stiffness and damping that it would move."""
+    q = math.atan2(-0.4, 0.2)       # both pins and the joint in one line
+    tip = (0.5 * math.cos(q) - 1.1 * math.sin(q), -0.5 * math.sin(q) - 1.1 * math.cos(q), 0.0)
+    ground = Ground(stiffness=1e7, damping=1.0, friction=0.7, tangential_stiffness=1e5,
+                    tangential_damping=15.0)
+    robot = Robot(replace(boom(1), contacts=(
+        RobotContact(name='tip', link=1, point=tip, ground=ground),)),
+        RobotStart(joints=(0.0,)), MS)
+    ports = np.zeros(1, LOAD_PORT)
+    for angle, moves in ((q + 0.05, True), (q, False)):
+        robot._state[0] = angle
+        robot.ports(ports)
+        assert robot._records[4]['force'][0, 2] > 1e3      # the tip presses
+        assert (ports['inverse_mass'][0] > 1e-12) == moves
+        assert (ports['stiffness'][0] != 0.0) == moves == (ports['damping'][0] != 0.0)
