@@ -155,7 +155,9 @@ def _identify(parser: argparse.ArgumentParser) -> None:
 def _draw(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
     parser.add_argument(
-        '--out', type=Path, metavar='FILE', required=True, help='the figure: .png, .svg or .pdf')
+        '--out', type=shared_arguments.like_before(
+            'a figure', shared_arguments.PNG, b'<?xml', b'%PDF'), metavar='FILE', required=True,
+        help='the figure: .png, .svg or .pdf')
     shared_arguments.changes(parser, 'draw with another value, by its key and in its unit')
 
 

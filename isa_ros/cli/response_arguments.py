@@ -5,7 +5,7 @@ from pathlib import Path
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.shared_arguments import (
-    count, figure_to_write, file_to_write, number, positive)
+    count, figure_to_write, like_before, number, positive)
 
 LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
 
@@ -65,7 +65,7 @@ def tune(parser: argparse.ArgumentParser) -> None:
         help='of the reference, in N or Nm (default: 10 %% of the rated force)')
     shared_arguments.json_file(parser)
     parser.add_argument(
-        '--out', type=file_to_write, metavar='FILE.yaml',
+        '--out', type=like_before('of isa tune', b'# Tuned by isa tune.'), metavar='FILE.yaml',
         help='write a run file with the gains, for isa bringup')
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.shared_arguments import (
-    count, file_to_write, names, not_negative, positive, seed)
+    count, json_to_write, like_before, names, not_negative, positive, seed)
 from isa_ros.fieldbus import request
 from isa_ros.run.option import COMPRESSIONS, Kind, Option
 from isa_ros.run.options import OPTIONS
@@ -15,7 +15,7 @@ from isa_ros.run.options import OPTIONS
 DESCRIBE = 'describe'
 
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
-    Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
+    Kind.PATH: Path, Kind.NEW_FILE: json_to_write, Kind.POSITIVE: positive,
     Kind.LIMIT: not_negative, Kind.NOT_NEGATIVE: not_negative, Kind.WHOLE: seed, Kind.NAMES: names}
 """Checks of a value by kind; other kinds are texts."""
 
@@ -89,9 +89,10 @@ def _describe(parser: argparse.ArgumentParser) -> None:
     _profile(parser)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
-        '--esi', type=file_to_write, metavar='FILE.xml', help='write the XML file of EtherCAT')
+        '--esi', type=like_before('an ESI', b'<?xml'), metavar='FILE.xml',
+        help='write the XML file of EtherCAT')
     what.add_argument(
-        '--eds', type=file_to_write, metavar='FILE.eds',
+        '--eds', type=like_before('an EDS', b'[FileInfo]'), metavar='FILE.eds',
         help='write the data sheet of CANopen; for each of several actuators a FILE_NAME.eds')
     what.add_argument(
         '--ros2-control', type=shared_arguments.directory_to_write, metavar='DIR',

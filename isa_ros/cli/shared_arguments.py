@@ -1,6 +1,7 @@
 """Arguments of several commands, and types of arguments; invalid values give one-line errors."""
 
 import argparse
+from collections.abc import Callable
 import json
 import math
 import os
@@ -121,15 +122,27 @@ def json_to_write(text: str) -> Path:
     return path
 
 
-def figure_to_write(text: str) -> Path:
-    """Return the path of a figure that can be written; only another figure is replaced by it."""
-    path = file_to_write(text)
-    if path.exists():
-        with path.open('rb') as file:
-            if file.read(len(PNG)) not in (PNG, b''):
+def like_before(what: str, *heads: bytes) -> Callable[[str], Path]:
+    """
+    Return what gives the path of a file that can be written.
+
+    One that is there is replaced if it is empty or begins with one of ``heads``, as what is
+    written does: ``what``, in words.
+    """
+    def own(text: str) -> Path:
+        path = file_to_write(text)
+        if path.exists():
+            with path.open('rb') as file:
+                found = file.read(max(map(len, heads)))
+            if found and not found.startswith(heads):
                 raise argparse.ArgumentTypeError(
-                    f'{text} already exists and is not a PNG, so it is not overwritten')
-    return path
+                    f'{text} already exists and is not {what}, so it is not overwritten')
+        return path
+    return own
+
+
+figure_to_write = like_before('a PNG', PNG)
+"""Returns the path of a figure."""
 
 
 def directory_to_write(text: str) -> Path:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from isa_ros.cli.main import main, make_parser
 from isa_ros.cli.shared_arguments import (
-    count, figure_to_write, json_to_write, number, PNG, positive, seed)
+    count, figure_to_write, json_to_write, like_before, number, PNG, positive, seed)
 import pytest
 
 
@@ -19,7 +19,9 @@ def test_an_underscore_is_not_a_digit(of) -> None:
 
 @pytest.mark.parametrize(('of', 'own', 'foreign', 'what'), [
     (json_to_write, b'{"a": 1}', b'rosbag2_bagfile_information:\n  version: 9\n', 'is not JSON'),
-    (figure_to_write, PNG + b'...', b'\xff\xd8\xff a photograph', 'is not a PNG')])
+    (figure_to_write, PNG + b'...', b'\xff\xd8\xff a photograph', 'is not a PNG'),
+    (like_before('of isa tune', b'# Tuned by isa tune.'), b'# Tuned by isa tune.\nname: rig\n',
+     b'name: my_own_rig\n', 'is not of isa tune')])
 def test_a_file_of_another_kind_is_not_replaced(
         tmp_path: Path, of, own: bytes, foreign: bytes, what: str) -> None:
     path = tmp_path / 'out'
@@ -31,6 +33,21 @@ def test_a_file_of_another_kind_is_not_replaced(
     with pytest.raises(ArgumentTypeError, match=f'already exists and {what}, so it is not over'):
         of(str(path))
     assert path.read_bytes() == foreign
+
+
+@pytest.mark.parametrize('command', [
+    ['tune', 'isa_v5', '--out'], ['draw', 'two_joint_leg', '--out'],
+    ['bus', 'describe', 'rig_linear', '--esi'], ['bus', 'describe', 'rig_linear', '--eds'],
+    ['step', 'isa_v5', '--out'], ['step', 'isa_v5', '--json'], ['bringup', 'leg', '--save']])
+def test_no_command_replaces_a_run_file(
+        tmp_path: Path, command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """One rule for all that write a file, and no option that lifts it."""
+    path = tmp_path / 'mine.yaml'
+    path.write_text('name: mine\n')
+    with pytest.raises(SystemExit) as ended:
+        make_parser().parse_args([*command, str(path)])
+    assert ended.value.code == 2
+    assert 'so it is not overwritten' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [

@@ -44,17 +44,19 @@ def test_the_output_stays_for_its_time_and_then_goes_off_with_a_fault():
     since, value = frozen.own.trip_since[bit], frozen.own.trip_values[bit]
     frozen.pass_by(100)     # it trips once
     assert (frozen.own.trip_since[bit], frozen.own.trip_values[bit]) == (since, value)
+    assert frozen.own.values[bit] == value      # and is judged no more
     assert frozen.state.frozen_for == pytest.approx((FIVE_MS + 101) * CONVERSION)
 
 
-def test_what_tripped_before_stays_the_first_cause():
-    frozen = Frozen()
-    bit = BITS['overload']
+@pytest.mark.parametrize('cause', ['overload', 'runaway'])
+def test_what_tripped_before_stays_the_first_cause(cause):
+    """Whether its bit is below that of the watchdog or above it."""
+    frozen, bit = Frozen(), BITS[cause]
     note_trip(bit, 0, 5e3, frozen.own)
     frozen.own.trips = frozen.own.first = 1 << bit
     frozen.pass_by(FIVE_MS + 1)
-    assert conditions(float(frozen.own.trips)) == ['overload', 'watchdog']
-    assert conditions(float(frozen.own.first)) == ['overload']
+    assert set(conditions(float(frozen.own.trips))) == {cause, 'watchdog'}
+    assert conditions(float(frozen.own.first)) == [cause]
 
 
 def test_with_the_protection_off_the_circuit_acts_alone():
