@@ -18,6 +18,7 @@ from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.cushion_sheets import refuse_cushions
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
+from isa_ros.reu import dither
 from isa_ros.reu.block import Pid
 from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.cascade import reu_record
@@ -105,7 +106,7 @@ def _refuse_hysteresis_of_pilot(plant: LinearPlant | RotaryPlant) -> None:
 
 
 _KINDS: dict[type, str] = {
-    Off: 'off', Held: 'held', Pid: 'pid', LeadLag: 'lead_lag', ClosedLoopCoil: 'closed_loop',
+    Off: 'off', Held: 'held', dither.Held: 'held', Pid: 'pid', LeadLag: 'lead_lag', ClosedLoopCoil: 'closed_loop',
     ExplicitCoil: 'explicit'}
 
 

@@ -8,6 +8,7 @@ MPA = 1e6          # 1 MPa in Pa
 MILLI = 1e-3       # 1 mm in m, 1 mA in A
 MICRO = 1e-6       # 1 um in m, 1 uA in A
 LITRE = 1e-3       # 1 l in m3
+PERCENT = 0.01
 MILLILITRE = 1e-6  # 1 ml in m3
 
 
@@ -34,7 +35,7 @@ NOT_SI = {
     'mm/s/mA': Unit('m/s/A', MILLI, MILLI), 'mA/MPa': Unit('A/Pa', MILLI, MPA),
     'uA/K': Unit('A/K', MICRO), 'V/mA': Unit('V/A', 1.0, MILLI),
     'V/(mA s)': Unit('V/(A s)', 1.0, MILLI), 'V s/mA': Unit('V s/A', 1.0, MILLI),
-    '%': Unit('1', 1.0, 100.0), 'rpm': Unit('Hz', 1.0, 60.0),
+    '%': Unit('1', PERCENT), 'rpm': Unit('Hz', 1.0, 60.0),
     'MB': Unit('B', MPA), 'Mbit/s': Unit('bit/s', MPA)}
 """All units of data sheets that are not SI. Hz is; rad/s is 2 pi of it, by the equation."""
 _SI = frozenset((

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
 import numpy as np
 
-_PERCENT = 0.01
 _PLAYS = 4      # of the magnetic part: at 5 % of the current 3 make 2 % more of a loop, 8 none
 
 
@@ -66,9 +66,9 @@ def hysteresis_record(sheet: Hysteretic, rated: float) -> np.record:
     """Return the `HYSTERESIS` record of a valve with the ``rated`` current (A) at its stop."""
     widest, threshold = sheet.hysteresis_percent, sheet.threshold_percent
     reach = 0.5 * sheet.hysteresis_from_percent     # R of V24, in percent
-    halves = {f'r_{j + 1}': (j + 0.5) / _PLAYS * reach * _PERCENT * rated for j in range(_PLAYS)}
+    halves = {f'r_{j + 1}': (j + 0.5) / _PLAYS * reach * PERCENT * rated for j in range(_PLAYS)}
     return record(
-        HYSTERESIS, is_on=float(widest > 0.0), half=0.5 * threshold * _PERCENT * rated,
+        HYSTERESIS, is_on=float(widest > 0.0), half=0.5 * threshold * PERCENT * rated,
         share=(widest - threshold) / reach, plays=np.zeros(1, PLAYS)[0], **halves)
 
 

@@ -13,11 +13,12 @@ from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MILLI, PERCENT
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.bumpless import faded, inner_reference
 from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
+from isa_ros.reu.dither import dither
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.filters import SPEED, speed_record, SPEED_STATE, speed_step
@@ -43,6 +44,8 @@ REU = np.dtype([
     ('stroke', 'f8'),
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
+    ('dither', 'f8'),     # on the amplifier's current, A; 0: none
+    ('dither_steps', 'i8'),     # half of its period
     ('is_frozen', 'f8'),
     ('watchdog', 'f8'),   # s; 0: none
     ('protection', PROTECTION),
@@ -108,6 +111,8 @@ def reu_record(
     row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
         model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration,
         resolution), block)
+    row['dither'] = PERCENT * reu.current.dither_percent * model.x_max / k_spool * parallel
+    row['dither_steps'] = reu.current.half_period * steps['current']
     row['is_frozen'], row['watchdog'] = reu.frozen, reu.watchdog_ms * MILLI
     return record
 
@@ -203,8 +208,11 @@ def cascade_step(step, reu, state):
         series = faded(
             series, state.current_reference / reu.parallel, reu.rules.fade, device.fade)
     state.current_reference = reu.parallel * series
+    current = state.current_reference
+    if reu.dither > 0.0 and device.is_on:
+        current += dither(step, reu.offset_steps, reu.dither_steps, reu.dither)
     if reu.current_kind == LEADS_AND_LAGS:
         state.drive = lead_lag_step(
-            state.current_reference, state.measured.current, reu.lead_lag, state.lead_lag)
+            current, state.measured.current, reu.lead_lag, state.lead_lag)
     else:
-        state.drive = state.current_reference
+        state.drive = current

@@ -10,18 +10,18 @@ import math
 
 from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.parameter import choice, parameter, tunable
 from isa_ros.core.record import record
 from isa_ros.errors import ParameterError
+from isa_ros.reu.dither import Dithered
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class LeadLag(Parameters):
+class LeadLag(Dithered):
     """Gains of the current loop."""
 
-    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
     kp_v_per_ma: float = tunable('K_p of equation 1', 'V/mA', named='kp', gt=0.0, le=1e3)
     kpf: float = tunable('K_pf on the demand (eq 2)', '1', gt=0.0, le=1e6)
     lead_rad_per_s: float = tunable('w_lead', 'rad/s', named='lead', gt=0.0, le=1e6)

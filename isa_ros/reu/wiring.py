@@ -15,6 +15,7 @@ from isa_ros.core.parameter import choice, fault, nested, parameter, Parameters,
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
+from isa_ros.reu import dither
 from isa_ros.reu.block import Pid
 from isa_ros.reu.compensation import DualGain
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
@@ -72,7 +73,7 @@ class Held(Parameters):
 
 OFF, HELD, PID, IMPEDES, LINEARISES, LEADS_AND_LAGS = range(6)
 KINDS: dict[type, int] = {
-    Off: OFF, Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
+    Off: OFF, Held: HELD, dither.Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
     LeadLag: LEADS_AND_LAGS}
 """The kinds of blocks as numbers, for the kernels."""
 
@@ -86,7 +87,7 @@ class Reu(Parameters):
     force: Off | Pid | FeedbackLinearisation
     pressure: Off | Pid
     spool: Off | Held | Pid
-    current: Held | LeadLag
+    current: dither.Held | LeadLag
     device: Device = nested(BEFORE)
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
