@@ -25,7 +25,10 @@ _MEAN = 0.05    # s: some periods of such an oscillation
 def ratings_of(plant: np.record) -> Ratings:
     """Return the ratings of a `PLANT` record."""
     oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
-    flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(plant.relief.p_open)
+    most = plant.relief.p_open
+    if valve.most_drop > 0.0:
+        most = min(most, valve.most_drop)
+    flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(most)
     return Ratings(
         stroke=float(oil.stroke), speed=float(flow / min(oil.area_a, oil.area_b)),
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),

@@ -17,12 +17,14 @@ from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.cushion_sheets import refuse_cushions
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
-from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
+from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool, ResponseSpool
+from isa_ros.plant.stated_curves import SidesFlow
+from isa_ros.plant.valve_sheets import DataSheetValve
 from isa_ros.reu import dither
 from isa_ros.reu.block import Pid
 from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.cascade import reu_record
-from isa_ros.reu.feedback_linearisation import LINEARISED
+from isa_ros.reu.feedback_linearisation import FeedbackLinearisation, LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.protection import protection_record
 from isa_ros.reu.protection_sheet import reactions_of
@@ -74,7 +76,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
             f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: the spool '
             'loop is open; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
     if isinstance(reu.spool, Pid) and not isinstance(
-            plant.spool, (PilotedSpool, DirectSpool, DataSheetSpool)):
+            plant.spool, (PilotedSpool, DirectSpool, DataSheetSpool, ResponseSpool)):
         raise ConfigError(
             'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
             'closed loop of the spool; set plant.spool.kind: piloted, or reu.spool.kind: held')
@@ -83,6 +85,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
             f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
             f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
     _refuse_hysteresis_of_pilot(plant)
+    _refuse_beside_stated_valve(sheet)
     _refuse_limit_beyond_stop(sheet)
     if isinstance(plant, LinearPlant):
         refuse_cushions(
@@ -105,9 +108,29 @@ def _refuse_hysteresis_of_pilot(plant: LinearPlant | RotaryPlant) -> None:
             'pilot; set plant.spool.kind: closed_loop, or 0 %')
 
 
+def _refuse_beside_stated_valve(sheet: ActuatorSheet) -> None:
+    """Refuse an inverse of a curve that a data sheet's valve does not have, and two throttles."""
+    valve = sheet.plant.valve
+    if not isinstance(valve, DataSheetValve):
+        return
+    if valve.compensated_drop_mpa > 0.0 and not isinstance(sheet.plant.block_valve, NoneBlock):
+        raise ConfigError(
+            f'plant.valve.compensated_drop_mpa = {valve.compensated_drop_mpa:g} MPa and '
+            'plant.block_valve.kind = poppet, must be none: the drop over a land is not known')
+    if isinstance(sheet.reu.force, FeedbackLinearisation):
+        for name, is_there in (
+                ('compensated_drop_mpa', valve.compensated_drop_mpa > 0.0),
+                ('dead_band_percent', valve.dead_band_percent > 0.0),
+                ('flow.kind = sides', isinstance(valve.flow, SidesFlow))):
+            if is_there:
+                raise ConfigError(
+                    f'reu.force.kind = feedback_linearisation and plant.valve.{name}: it inverts '
+                    'one curve without dead band and compensator; set reu.force.kind: pid')
+
+
 _KINDS: dict[type, str] = {
-    Off: 'off', Held: 'held', dither.Held: 'held', Pid: 'pid', LeadLag: 'lead_lag', ClosedLoopCoil: 'closed_loop',
-    ExplicitCoil: 'explicit'}
+    Off: 'off', Held: 'held', dither.Held: 'held', Pid: 'pid', LeadLag: 'lead_lag',
+    ClosedLoopCoil: 'closed_loop', ExplicitCoil: 'explicit'}
 
 
 def _kind(part: Parameters) -> str:

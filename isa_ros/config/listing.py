@@ -22,6 +22,7 @@ from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
+from isa_ros.plant.sheet_fit import Fit, fits
 from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 from isa_ros.text.table import aligned
 
@@ -148,6 +149,16 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
         yield _table(title + about, [
             row._replace(source=SET) if _is_among(f'{title}.{row.parameter}', changes) else row
             for row in found])
+        if isinstance(parameters, ActuatorSheet) and (fitted := fits(parameters.plant)):
+            yield _fitted(title, fitted)
+
+
+def _fitted(title: str, found: Sequence[Fit]) -> str:
+    """Return the table of what a data sheet states, and what the model of the valve has."""
+    head = ('of the data sheet', 'stated', 'model', 'unit')
+    rows = [(one.what, '-' if one.stated is None else f'{one.stated:.4g}', f'{one.model:.4g}',
+             one.unit) for one in found]
+    return '\n'.join([f'{title}: fitted', *aligned([head, *rows])])
 
 
 def _single(leaf: Leaf, source: str) -> ListedValue:

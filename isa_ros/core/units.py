@@ -35,12 +35,12 @@ NOT_SI = {
     'mm/s/mA': Unit('m/s/A', MILLI, MILLI), 'mA/MPa': Unit('A/Pa', MILLI, MPA),
     'uA/K': Unit('A/K', MICRO), 'V/mA': Unit('V/A', 1.0, MILLI),
     'V/(mA s)': Unit('V/(A s)', 1.0, MILLI), 'V s/mA': Unit('V s/A', 1.0, MILLI),
-    '%': Unit('1', PERCENT), 'rpm': Unit('Hz', 1.0, 60.0),
-    'MB': Unit('B', MPA), 'Mbit/s': Unit('bit/s', MPA)}
+    '%': Unit('1', PERCENT), '%/MPa': Unit('1/Pa', PERCENT, MPA), '%/K': Unit('1/K', PERCENT),
+    'rpm': Unit('Hz', 1.0, 60.0), 'MB': Unit('B', MPA), 'Mbit/s': Unit('bit/s', MPA)}
 """All units of data sheets that are not SI. Hz is; rad/s is 2 pi of it, by the equation."""
 _SI = frozenset((
-    '1', '1/K', '1/s', '1/s2', 'A', 'A/s', 'H', 'Hz', 'J', 'J/(kg K)', 'J/K', 'K', 'K/s', 'N',
-    'N s/m', 'N/m', 'N/m^1.5', 'N/s', 'Nm', 'Nm/rad', 'Nm/s', 'Nms/rad', 'Ns/m', 'Pa', 'Pa/s',
+    '1', '1/K', '1/Pa', '1/s', '1/s2', 'A', 'A/s', 'H', 'Hz', 'J', 'J/(kg K)', 'J/K', 'K', 'K/s',
+    'N', 'N s/m', 'N/m', 'N/m^1.5', 'N/s', 'Nm', 'Nm/rad', 'Nm/s', 'Nms/rad', 'Ns/m', 'Pa', 'Pa/s',
     'V', 'W', 'W/K', 'bit', 'celsius', 'bits', 'cycles', 'frames', 'kg', 'kg m2', 'kg/m3', 'm',
     'm/m',
     'm/rad', 'm/s', 'm/s2', 'm3', 'm3/s', 'm3/s/Pa', 'ohm', 'rad', 'rad/s', 'rad/s2', 's', 's/m',

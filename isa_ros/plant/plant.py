@@ -54,7 +54,7 @@ class PlantSheet(Parameters):
 
     coil: coil.ClosedLoopCoil | coil.ExplicitCoil
     spool: (spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
-            | spool.DataSheetSpool)
+            | spool.DataSheetSpool | spool.ResponseSpool)
     valve: DualGainValve | HighResponseValve | DataSheetValve
     oil: chambers.Oil
     relief: relief.Relief
@@ -90,8 +90,10 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     """Return the `PLANT` record of a sheet, shape (1,)."""
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
-    own_spool = spool.spool_record(sheet.spool, celsius)
     lands = valve_record.valve_record(sheet.valve, area_a / area_b)
+    rated = lands.x_max / lands.k_spool
+    shift = valve_record.null_shift(sheet.valve, rated)
+    own_spool = spool.spool_record(sheet.spool, celsius, lands.x_max, shift)
     oil = chambers.chambers_record(sheet.drive, sheet.oil, sheet.mechanics.inertia)
     seals = friction.friction_record(sheet.friction)
     return np.array([record(
@@ -105,10 +107,10 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
         mechanics=mechanics.mechanics_record(sheet.mechanics),
         sensors=sensors.sensors_record(sheet.sensors),
         thermal=thermal.thermal_record(
-            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, lands, seals,
+            sheet.thermal, celsius, spool.bias_per_k(sheet.spool) + shift[1], oil, lands, seals,
             own_spool),
         block=block_valve.block_record(sheet.block_valve),
-        hysteresis=hysteresis.hysteresis_record(sheet.valve, lands.x_max / lands.k_spool),
+        hysteresis=hysteresis.hysteresis_record(sheet.valve, rated),
         **_cushions(sheet),
         )], PLANT).view(np.recarray)
 

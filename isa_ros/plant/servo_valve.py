@@ -69,6 +69,13 @@ def land_flow(opening, valve):
 
 
 @kernel
+def back_flow(opening, valve):
+    """Return g(u) + l of the lands A-T and P-B with a curve of their own  (V14, V15), in m3/s."""
+    leak = leakage(abs(opening), valve)
+    return y_on_lines(opening, valve.back) + leak if opening > 0.0 else leak
+
+
+@kernel
 def conductances(x, valve):
     """
     Return those of the lands P-A, A-T, B-T, P-B at spool ``x``, in m3/s/sqrt(Pa)  (V7).
@@ -80,10 +87,15 @@ def conductances(x, valve):
         bt, leak_bt = land_flow(x - valve.lap_bt, valve)
         at, leak_at = land_flow(-x - valve.lap_at, valve)
         pb, leak_pb = land_flow(-x - valve.lap_pb, valve)
+        if valve.has_sides > 0.0:
+            at, pb = back_flow(-x - valve.lap_at, valve), back_flow(-x - valve.lap_pb, valve)
     else:
         travel = abs(x)
         leak = leakage(travel, valve)
-        opened = flow_curve(travel, valve) + leak
+        if valve.has_sides > 0.0 and x < 0.0:
+            opened = back_flow(travel, valve)
+        else:
+            opened = flow_curve(travel, valve) + leak
         leak_pa = leak_at = leak_bt = leak_pb = leak
         pa = bt = opened if x > 0.0 else leak
         at = pb = opened if x < 0.0 else leak
@@ -111,12 +123,17 @@ def root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, valve):
     """
     Return S(dP) of the lands P-A, A-T, B-T, P-B as a step can follow it  (V5, V18), in sqrt(Pa).
 
-    On chambers of elastances ``per_a``, ``per_b``, in Pa/m3; 0: exactly V5.
+    On chambers of elastances ``per_a``, ``per_b``, in Pa/m3; 0: exactly V5. The drop over a land
+    from the supply is at most that of a pressure compensator in front of it  (V30).
     """
     pa, at, bt, pb = opened
     delta_a = smoothing(pa + at, per_a, valve.delta)
     delta_b = smoothing(pb + bt, per_b, valve.delta)
-    return smoothed_roots(p_a, p_b, p_s, p_t, delta_a, delta_b)
+    roots = smoothed_roots(p_a, p_b, p_s, p_t, delta_a, delta_b)
+    if valve.most_drop > 0.0:
+        return (signed_sqrt(min(p_s - p_a, valve.most_drop), delta_a), roots[1], roots[2],
+                signed_sqrt(min(p_s - p_b, valve.most_drop), delta_b))
+    return roots
 
 
 @kernel

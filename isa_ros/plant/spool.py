@@ -10,14 +10,19 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, fault, parameter, Parameters
+from isa_ros.core.parameter import choice, fault, nested, parameter, Parameters
 from isa_ros.core.record import record
-from isa_ros.core.units import MICRO, MILLI, MPA
+from isa_ros.core.units import MICRO, MILLI, MPA, PERCENT
+from isa_ros.errors import ParameterError
+from isa_ros.plant.response_fit import (
+    damping_of, passed_at_3db, passed_at_90, SecondOrder, speed_limit)
 import numpy as np
 
 CLOSED_LOOP = 0
 DIRECT = 1
 PILOTED = 2
+_OVERDAMPED = 5.0   # the largest damping ratio of any spool
+_UNLIMITED = 1.0 - 1e-9     # of a saturation: nothing is cut off
 STUCK = '1: the spool is blocked and holds its position'
 
 
@@ -32,6 +37,11 @@ class NullBias(Parameters):
     temperature_ua_per_k: float = parameter('shift with oil temperature', 'uA/K', ge=-50, le=50)
     reference_supply_mpa: float = parameter('reference conditions', 'MPa', gt=0.0, le=70.0)
     reference_celsius: float = parameter('reference conditions', 'celsius', ge=-30.0, le=80.0)
+
+
+NO_BIAS = NullBias(
+    current_ma=0.0, supply_ma_per_mpa=0.0, return_ma_per_mpa=0.0, temperature_ua_per_k=0.0,
+    reference_supply_mpa=21.0, reference_celsius=40.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +95,67 @@ class DataSheetSpool(Parameters):
         return stated / math.sqrt(damped + math.sqrt(damped * damped + 1.0))
 
 
+@dataclass(frozen=True, kw_only=True)
+class ResponseSpool(Parameters):
+    """A spool with the frequency response of a data sheet at a small and a large amplitude."""
+
+    minus_90_deg_hz: float = parameter(
+        'frequency of -90 degrees at a small amplitude', 'Hz', gt=0.0, le=1e3)
+    minus_3_db_hz: float = parameter(
+        'frequency of -3 dB at a small amplitude', 'Hz', gt=0.0, le=1e3)
+    large_percent: float = parameter(
+        'large amplitude, of the current at the stop', '%', absent=90.0,
+        source='assumed, as sheets', gt=0.0, le=100.0)
+    large_minus_90_deg_hz: float = parameter(
+        'frequency of -90 degrees at the large amplitude; 0: not stated', 'Hz', absent=0.0,
+        source='assumed, not stated', ge=0.0, le=1e3)
+    large_minus_3_db_hz: float = parameter(
+        'frequency of -3 dB at the large amplitude; 0: not stated', 'Hz', absent=0.0,
+        source='assumed, not stated', ge=0.0, le=1e3)
+    null_bias: NullBias = nested(NO_BIAS)
+    stuck: float = fault(STUCK, '1', is_whole=True, ge=0.0, le=1.0)
+
+    def __post_init__(self) -> None:
+        """Refuse points that no second-order spool with a limited speed has."""
+        super().__post_init__()
+        zeta = self.damping_ratio
+        if zeta > _OVERDAMPED:
+            raise ParameterError(
+                f'minus_3_db_hz = {self.minus_3_db_hz:g} Hz and minus_90_deg_hz = '
+                f'{self.minus_90_deg_hz:g} Hz need a damping ratio of {zeta:.3g}, must be <= '
+                f'{_OVERDAMPED:g}')
+        for name in ('minus_90_deg_hz', 'minus_3_db_hz'):
+            small, large = getattr(self, name), getattr(self, f'large_{name}')
+            if large > small:
+                raise ParameterError(
+                    f'large_{name} = {large:g} Hz, must be <= {name} = {small:g} Hz: a spool is '
+                    'not faster at a larger amplitude')
+
+    @property
+    def natural_frequency_rad_per_s(self) -> float:
+        """Return w_n, the frequency of -90 degrees  (V28)."""
+        return 2.0 * math.pi * self.minus_90_deg_hz
+
+    @property
+    def damping_ratio(self) -> float:
+        """Return zeta of both points  (V28)."""
+        return damping_of(self.minus_90_deg_hz, self.minus_3_db_hz)
+
+    @property
+    def limit(self) -> float:
+        """Return the largest speed per large amplitude, 1/s; 0: none  (V29)."""
+        own = SecondOrder(self.natural_frequency_rad_per_s, self.damping_ratio)
+        if self.large_minus_90_deg_hz > 0.0:
+            frequency = self.large_minus_90_deg_hz
+            passed = passed_at_90(own, frequency)
+        elif self.large_minus_3_db_hz > 0.0:
+            frequency = self.large_minus_3_db_hz
+            passed = passed_at_3db(own, frequency)
+        else:
+            return 0.0
+        return speed_limit(own, frequency, passed) if passed < _UNLIMITED else 0.0
+
+
 SPOOL = np.dtype([
     ('kind', 'i8'), ('w_n', 'f8'), ('zeta', 'f8'),
     ('k_loop', 'f8'),       # 1/s
@@ -93,17 +164,25 @@ SPOOL = np.dtype([
     ('bias_s', 'f8'), ('bias_t', 'f8'),     # A/Pa
     ('p_s_ref', 'f8'),      # Pa
     ('is_stuck', 'f8'),
+    ('v_max', 'f8'),        # largest speed, m/s; 0: none
 ])
 SPOOL_STATE = np.dtype([('position', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
 
-def bias_per_k(sheet: Spool | DataSheetSpool) -> float:
+def bias_per_k(sheet: Spool | DataSheetSpool | ResponseSpool) -> float:
     """Return b_theta of V12, in A/K on the series scale."""
     return sheet.null_bias.temperature_ua_per_k * MICRO
 
 
-def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record:
-    """Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius)."""
+def spool_record(
+        sheet: Spool | DataSheetSpool | ResponseSpool, temperature: float, travel: float = 0.0,
+        shift: tuple[float, float] = (0.0, 0.0)) -> np.record:
+    """
+    Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius).
+
+    ``travel`` is that at the stop, m, ``shift`` what the null shifts beside the spool's own bias
+    with supply pressure (A/Pa) and temperature (A/K).
+    """
     kind, k_loop, k_pilot = DIRECT, 0.0, 0.0
     if isinstance(sheet, ClosedLoopSpool):
         kind, k_loop = CLOSED_LOOP, sheet.loop_gain_per_s
@@ -114,9 +193,12 @@ def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record
     return record(
         SPOOL, kind=kind, w_n=sheet.natural_frequency_rad_per_s, zeta=sheet.damping_ratio,
         k_loop=k_loop, k_pilot=k_pilot,
-        bias=bias.current_ma * MILLI + bias_per_k(sheet) * warmer,
-        bias_s=bias.supply_ma_per_mpa * MILLI / MPA, bias_t=bias.return_ma_per_mpa * MILLI / MPA,
-        p_s_ref=bias.reference_supply_mpa * MPA, is_stuck=sheet.stuck)
+        bias=bias.current_ma * MILLI + (bias_per_k(sheet) + shift[1]) * warmer,
+        bias_s=bias.supply_ma_per_mpa * MILLI / MPA + shift[0],
+        bias_t=bias.return_ma_per_mpa * MILLI / MPA,
+        p_s_ref=bias.reference_supply_mpa * MPA, is_stuck=sheet.stuck,
+        v_max=(sheet.limit * sheet.large_percent * PERCENT * travel
+               if isinstance(sheet, ResponseSpool) else 0.0))
 
 
 @kernel
@@ -158,6 +240,18 @@ def spool_acceleration(reference, spool, velocity, w_n, zeta):
 
 
 @kernel
+def limited_acceleration(reference, spool, velocity, own):
+    """
+    Return V10 with a pilot stage whose flow ends  (V29), in m/s2.
+
+    w_n^2 (x_r - x) within +-2 zeta w_n v_max, less 2 zeta w_n x'; ``own`` is the `SPOOL` record.
+    """
+    damping = 2.0 * own.zeta * own.w_n
+    most = damping * own.v_max
+    return max(-most, min(most, own.w_n * own.w_n * (reference - spool))) - damping * velocity
+
+
+@kernel
 def spool_rates(y, current, k_spool, spool, rates):
     """
     Write the rates of one `SPOOL_STATE` under a series-scale current, bias included.
@@ -171,6 +265,9 @@ def spool_rates(y, current, k_spool, spool, rates):
     if spool.kind == DIRECT:
         rates.velocity = spool_acceleration(
             spool_reference(current, k_spool), y.position, y.velocity, spool.w_n, spool.zeta)
+        if spool.v_max > 0.0:
+            rates.velocity = limited_acceleration(
+                spool_reference(current, k_spool), y.position, y.velocity, spool)
         rates.acceleration = 0.0
         return
     rates.velocity = y.acceleration

@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 from isa_ros.core.piecewise import LINES, lines_record, y_on_lines
 from isa_ros.core.record import record
-from isa_ros.core.units import LPM, MICRO, MILLI, MPA
+from isa_ros.core.units import LPM, MICRO, MILLI, MPA, PERCENT
+from isa_ros.plant.pressure_gain import land_leakage_at
+from isa_ros.plant.stated_curves import SidesFlow
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
@@ -29,6 +31,9 @@ VALVE = np.dtype([
     ('has_points', 'f8'),   # 1: flow and leakage are the two curves below
     ('flow', LINES), ('leak', LINES),           # m3/s at dp_ref over m of spool
     ('leak_factor', 'f8'),  # of the curve above  (T3)
+    ('has_sides', 'f8'),    # 1: retracting, the flow is the curve below
+    ('back', LINES),
+    ('most_drop', 'f8'),    # over a land from the supply, of a compensator, Pa; 0: none
 ])
 
 
@@ -70,6 +75,9 @@ class _Metering(NamedTuple):
     has_points: float
     flow: np.record
     leak: np.record
+    has_sides: float
+    back: np.record
+    most_drop: float
 
 
 def _drawn(sheet: DualGainValve | HighResponseValve) -> _Metering:
@@ -87,24 +95,28 @@ def _drawn(sheet: DualGainValve | HighResponseValve) -> _Metering:
         k_low, k_high, q_rest, x_dg, 1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
         sheet.null_leakage_lpm * LPM, sheet.leakage_travel_um * MICRO,
         sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
-        0.0, none, none)
+        0.0, none, none, 0.0, none, 0.0)
 
 
-def land_leakage(flow: float, total: float, lands: Lands, root_drops: float) -> float:
+def land_leakage(
+        flow: float, total: float, lands: Lands, root_drops: float, most: float = math.inf
+        ) -> float:
     """
     Return the leakage l of a land that gives a valve's ``total`` with both ports shut  (V16).
 
     In m3/s at dp_ref. P-A and A-T are in series, and so are P-B and B-T: with a = f (g + l) of
     the open land, b = f l of the closed one, each pair passes a b/sqrt(a^2 + b^2) times
-    ``root_drops``, sqrt((P_S - P_T)/dp_ref). ``flow`` is g; the open lands are P-A and B-T.
+    ``root_drops``, sqrt((P_S - P_T)/dp_ref); of a compensated valve at most its land from the
+    supply with ``most``, the root of the compensator's drop over P_S - P_T. ``flow`` is g; the
+    open lands are P-A and B-T.
     """
-    pairs = (lands.pa, lands.at), (lands.bt, lands.pb)
+    pairs = (lands.pa, lands.at, True), (lands.bt, lands.pb, False)
 
     def passed(leak: float, opened: float) -> float:
         flow = 0.0
-        for f, g in pairs:
+        for f, g, is_supplied in pairs:
             a, b = f * opened, g * leak
-            flow += a * b / math.sqrt(a * a + b * b)
+            flow += min(a * b / math.sqrt(a * a + b * b), most * (a if is_supplied else b))
         return root_drops * flow
 
     low, high = 0.0, total / passed(1.0, 1.0)  # a land that is not open needs the most
@@ -118,21 +130,50 @@ def land_leakage(flow: float, total: float, lands: Lands, root_drops: float) -> 
 
 
 def _stated(sheet: DataSheetValve, lands: Lands) -> _Metering:
-    """Return the metering of a valve with points of its data sheet  (V15, V16)."""
+    """Return the metering of a valve with points of its data sheet  (V15, V16, V26, V27)."""
     k_spool, land_drop = sheet.spool_gain_mm_per_ma, 0.5 * sheet.rated_drop_mpa * MPA
-    flow = lines_record([i * k_spool * MILLI for i in sheet.flow.currents_ma],
-                        [q * LPM for q in sheet.flow.flows_lpm])
+    dead = dead_travel(sheet)
+    openings = [max(0.0, i * k_spool * MILLI - dead) for i in sheet.flow.currents_ma]
+    flow = lines_record(openings, [q * LPM for q in sheet.flow.flows_lpm])
+    back = flow
+    if isinstance(sheet.flow, SidesFlow):
+        back = lines_record(openings, [q * LPM for q in sheet.flow.retracting_lpm])
     at, own = sheet.leakage, sheet.leakage.pressure_mpa * MPA
+    most_drop = sheet.compensated_drop_mpa * MPA
+    most = math.sqrt(most_drop / own) if most_drop > 0.0 else math.inf
     travels = [i * k_spool * MILLI for i in at.current_ma]
-    leak = lines_record(travels, [
-        land_leakage(y_on_lines(x, flow), (total - at.tare_lpm) * LPM, lands,
-                     math.sqrt(own / land_drop))
-        for x, total in zip(travels, at.total_lpm)])
+    leaks = [land_leakage(y_on_lines(x, flow), (total - at.tare_lpm) * LPM, lands,
+                          math.sqrt(own / land_drop), most)
+             for x, total in zip(travels, at.total_lpm)]
+    if sheet.pressure_gain.percent > 0.0:
+        x = sheet.pressure_gain.current_percent * PERCENT * sheet.spool_stop_mm * MILLI
+        travels.insert(1, x)
+        leaks.insert(1, land_leakage_at(sheet.pressure_gain, y_on_lines(x, flow)))
+    leak = lines_record(travels, leaks)
     last = len(sheet.flow.currents_ma) - 1
     return _Metering(
         k_low=flow.slope[0], k_high=flow.slope[last - 1], q_rest=0.0, x_dg=flow.x[1],
         per_root_drop=1.0 / math.sqrt(land_drop), q_0=leak.y[0], x_l=flow.x[last],
-        c_tare=at.tare_lpm * LPM / math.sqrt(own), has_points=1.0, flow=flow, leak=leak)
+        c_tare=at.tare_lpm * LPM / math.sqrt(own), has_points=1.0, flow=flow, leak=leak,
+        has_sides=float(isinstance(sheet.flow, SidesFlow)), back=back, most_drop=most_drop)
+
+
+def dead_travel(sheet: DualGainValve | HighResponseValve | DataSheetValve) -> float:
+    """Return the overlap of every land that makes the stated dead band, m  (V26)."""
+    if isinstance(sheet, DataSheetValve):
+        return sheet.dead_band_percent * PERCENT * (sheet.spool_stop_mm * MILLI)
+    return 0.0
+
+
+def null_shift(
+        sheet: DualGainValve | HighResponseValve | DataSheetValve, rated: float
+        ) -> tuple[float, float]:
+    """Return the stated shift of null with supply (A/Pa) and temperature (A/K)  (V12)."""
+    if not isinstance(sheet, DataSheetValve):
+        return 0.0, 0.0
+    own = sheet.null_shift
+    return (own.supply_percent_per_mpa * PERCENT * rated / MPA,
+            own.temperature_percent_per_k * PERCENT * rated)
 
 
 def valve_record(
@@ -141,7 +182,9 @@ def valve_record(
     """Return the `VALVE` record of a sheet on an actuator with A_A/A_B = ``area_ratio``."""
     lands = Lands(*land_factors(area_ratio if sheet.slots == 'matched' else 1.0))
     metering = _stated(sheet, lands) if isinstance(sheet, DataSheetValve) else _drawn(sheet)
-    laps = {f'lap_{land}': getattr(sheet.lap, f'{land}_um') * MICRO for land in Lands._fields}
+    dead = dead_travel(sheet)
+    laps = {f'lap_{land}': getattr(sheet.lap, f'{land}_um') * MICRO + dead
+            for land in Lands._fields}
     return record(
         VALVE, k_spool=sheet.spool_gain_mm_per_ma, **metering._asdict(),
         x_max=sheet.spool_stop_mm * MILLI, delta=sheet.orifice_smoothing_kpa * 1e3,

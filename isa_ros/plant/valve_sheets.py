@@ -4,13 +4,16 @@ Data sheets of the servo valve's metering; `isa_ros.plant.servo_valve` has the e
 Currents are on the series scale of figure 5, flows those of one land with the factor 1.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+import math
 
-from isa_ros.core.parameter import choice, numbers, parameter, Parameters
-from isa_ros.core.piecewise import POINTS
+from isa_ros.core.parameter import choice, parameter, Parameters, section
+from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
 from isa_ros.plant.hysteresis import Hysteretic
+from isa_ros.plant.pressure_gain import PressureGain, refuse_contradiction
+from isa_ros.plant.stated_curves import (
+    interpolated, NullShift, PointsFlow, SidesFlow, StatedLeakage, StraightFlow)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,102 +86,14 @@ class HighResponseValve(Valve):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StraightFlow(Parameters):
-    """Flow proportional to the current, up to the rated one."""
-
-    rated_current_ma: float = parameter('series current of the rated flow', 'mA', gt=0.0, le=1e3)
-    rated_flow_lpm: float = parameter(
-        'flow at that current and the rated drop', 'l/min', gt=0.0, le=1e3)
-
-    @property
-    def currents_ma(self) -> tuple[float, ...]:
-        """Return the currents of the curve's points."""
-        return 0.0, self.rated_current_ma
-
-    @property
-    def flows_lpm(self) -> tuple[float, ...]:
-        """Return the flows of the curve's points."""
-        return 0.0, self.rated_flow_lpm
-
-
-@dataclass(frozen=True, kw_only=True)
-class PointsFlow(Parameters):
-    """Flow over current as points, with straight lines between them."""
-
-    current_ma: tuple[float, ...] = numbers(
-        'series current of each point, from 0', 'mA', least=2, most=POINTS, ge=0.0, le=1e3)
-    flow_lpm: tuple[float, ...] = numbers(
-        'flow of each point at the rated drop, from 0', 'l/min', least=2, most=POINTS, ge=0.0,
-        le=1e3)
-
-    def __post_init__(self) -> None:
-        """Refuse points that do not rise from the origin."""
-        super().__post_init__()
-        _refuse_falling('current_ma', self.current_ma, 'mA')
-        _refuse_falling('flow_lpm', self.flow_lpm, 'l/min')
-        _refuse_unpaired(self.current_ma, 'flow_lpm', self.flow_lpm)
-
-    @property
-    def currents_ma(self) -> tuple[float, ...]:
-        """Return the currents of the curve's points."""
-        return self.current_ma
-
-    @property
-    def flows_lpm(self) -> tuple[float, ...]:
-        """Return the flows of the curve's points."""
-        return self.flow_lpm
-
-
-@dataclass(frozen=True, kw_only=True)
-class StatedLeakage(Parameters):
-    """Leakage from supply to return over current as points, with both ports shut."""
-
-    pressure_mpa: float = parameter(
-        'supply above return pressure of the leakage', 'MPa', gt=0.0, le=70.0)
-    current_ma: tuple[float, ...] = numbers(
-        'series current of each point, from 0', 'mA', least=1, most=POINTS, ge=0.0, le=1e3)
-    total_lpm: tuple[float, ...] = numbers(
-        'leakage of each point, pilot stage included', 'l/min', least=1, most=POINTS, ge=0.0,
-        le=100.0)
-    tare_lpm: float = parameter('of it, that of the pilot stage', 'l/min', ge=0.0, le=100.0)
-
-    def __post_init__(self) -> None:
-        """Refuse currents that do not rise from 0, and totals below the pilot stage's."""
-        super().__post_init__()
-        _refuse_falling('current_ma', self.current_ma, 'mA')
-        _refuse_unpaired(self.current_ma, 'total_lpm', self.total_lpm)
-        for k, total in enumerate(self.total_lpm):
-            if total < self.tare_lpm:
-                raise ParameterError(
-                    f'total_lpm[{k}] = {total:g} l/min, must be >= tare_lpm = '
-                    f'{self.tare_lpm:g} l/min')
-
-
-def _refuse_falling(name: str, values: Sequence[float], unit: str) -> None:
-    if values[0] != 0.0:
-        raise ParameterError(f'{name}[0] = {values[0]:g} {unit}, must be 0 {unit}')
-    for k in range(1, len(values)):
-        if not values[k] > values[k - 1]:
-            raise ParameterError(
-                f'{name}[{k}] = {values[k]:g} {unit}, must be > {name}[{k - 1}] = '
-                f'{values[k - 1]:g} {unit}')
-
-
-def _refuse_unpaired(currents: Sequence[float], name: str, values: Sequence[float]) -> None:
-    if len(currents) != len(values):
-        raise ParameterError(
-            f'{name} has {len(values)} points, must have {len(currents)} as current_ma')
-
-
-@dataclass(frozen=True, kw_only=True)
 class DataSheetValve(Hysteretic):
-    """Servo valve as its data sheet has it: flow and leakage over current, the same both ways."""
+    """Servo or proportional valve as its data sheet has it: flow and leakage over current."""
 
     rated_drop_mpa: float = parameter(
         'pressure drop over both lands at the stated flows', 'MPa', gt=0.0, le=70.0)
     spool_travel_mm: float = parameter(
         'spool travel at the last point of the flow, its stop', 'mm', gt=0.0, le=10.0)
-    flow: StraightFlow | PointsFlow
+    flow: StraightFlow | PointsFlow | SidesFlow
     leakage: StatedLeakage
     orifice_smoothing_kpa: float = parameter(
         'pressure drop delta below which an orifice is laminar', 'kPa', gt=0.0, le=1000.0)
@@ -186,6 +101,57 @@ class DataSheetValve(Hysteretic):
         "areas of the lands' slots: matched to the areas of the piston, or all equal",
         'matched', 'equal')
     lap: Lap
+    pressure_gain: PressureGain = section(PressureGain)
+    null_shift: NullShift = section(NullShift)
+    dead_band_percent: float = parameter(
+        'current up to which an overlap keeps all lands closed, of the one at the stop', '%',
+        absent=0.0, source='assumed, none', ge=0.0, le=50.0)
+    compensated_drop_mpa: float = parameter(
+        'largest drop over a land from the supply, which a pressure compensator holds; 0: none',
+        'MPa', absent=0.0, source='assumed, none', ge=0.0, le=10.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a dead band or a pressure gain that contradicts flow or leakage."""
+        super().__post_init__()
+        if self.dead_band_percent > 0.0:
+            self._refuse_dead_band()
+        if self.pressure_gain.percent > 0.0:
+            self._refuse_pressure_gain()
+
+    def _refuse_dead_band(self) -> None:
+        first, full = self.flow.currents_ma[1], self.flow.currents_ma[-1]
+        end = self.dead_band_percent * PERCENT * full
+        if first <= end:
+            raise ParameterError(
+                f'flow.current_ma[1] = {first:g} mA, must be > {end:g} mA, the dead band of '
+                f'dead_band_percent = {self.dead_band_percent:g} %')
+        n = len(self.leakage.current_ma)
+        if n > 1:
+            raise ParameterError(
+                f'leakage.current_ma has {n} points, must have 1 with dead_band_percent = '
+                f'{self.dead_band_percent:g} %: closed lands leak alike')
+
+    def _refuse_pressure_gain(self) -> None:
+        gain, leakage = self.pressure_gain, self.leakage
+        for name, value, needed in (
+                ('slots', self.slots, 'equal'), ('dead_band_percent', self.dead_band_percent, 0.0),
+                ('compensated_drop_mpa', self.compensated_drop_mpa, 0.0)):
+            if value != needed:
+                raise ParameterError(
+                    f'pressure_gain.percent = {gain.percent:g} % and {name} = {value}, must be '
+                    f'{needed}: a pressure gain is that of four equal lands around null')
+        current = gain.current_percent * PERCENT * self.flow.currents_ma[-1]
+        if len(leakage.current_ma) > 1 and leakage.current_ma[1] <= current:
+            raise ParameterError(
+                f'leakage.current_ma[1] = {leakage.current_ma[1]:g} mA, must be > {current:g} mA: '
+                f'there the leakage follows from pressure_gain.percent = {gain.percent:g} %')
+        flow = interpolated(self.flow.currents_ma, self.flow.flows_lpm)
+        root = math.sqrt(2.0 * leakage.pressure_mpa / self.rated_drop_mpa)
+        beyond = None if len(leakage.current_ma) == 1 else (
+            leakage.total_lpm[1] - leakage.tare_lpm, flow(leakage.current_ma[1]))
+        refuse_contradiction(
+            gain, flow(current), root, current,
+            (leakage.total_lpm[0] - leakage.tare_lpm, leakage.total_lpm[0]), beyond)
 
     @property
     def spool_gain_mm_per_ma(self) -> float:
@@ -201,6 +167,6 @@ class DataSheetValve(Hysteretic):
     def bend(self) -> tuple[float, float] | None:
         """Return current (mA) and ratio of slopes at the bend of two lines, None for others."""
         i, q = self.flow.currents_ma, self.flow.flows_lpm
-        if len(i) != 3:
+        if len(i) != 3 or self.dead_band_percent > 0.0:
             return None
         return i[1], q[1] / i[1] * (i[2] - i[1]) / (q[2] - q[1])

@@ -21,7 +21,7 @@ class Dithered(Parameters):
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
     dither_percent: float = parameter(
-        'amplitude of a square wave on the reference, of the current at the spool\'s stop', '%',
+        "amplitude of a square wave on the reference, of the current at the spool's stop", '%',
         absent=0.0, source='assumed, none', ge=0.0, le=20.0)
     dither_hz: float = parameter(
         'its frequency', 'Hz', absent=0.0, source='assumed, none', ge=0.0, le=25e3)

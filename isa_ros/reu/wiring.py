@@ -73,8 +73,8 @@ class Held(Parameters):
 
 OFF, HELD, PID, IMPEDES, LINEARISES, LEADS_AND_LAGS = range(6)
 KINDS: dict[type, int] = {
-    Off: OFF, Held: HELD, dither.Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
-    LeadLag: LEADS_AND_LAGS}
+    Off: OFF, Held: HELD, dither.Held: HELD, Pid: PID, Impedance: IMPEDES,
+    FeedbackLinearisation: LINEARISES, LeadLag: LEADS_AND_LAGS}
 """The kinds of blocks as numbers, for the kernels."""
 
 

@@ -24,7 +24,8 @@ NO_LAP = Lap(pa_um=0.0, at_um=0.0, bt_um=0.0, pb_um=0.0)
 SHEET = DataSheetValve(
     rated_drop_mpa=7.0, spool_travel_mm=0.5, flow=FLOW, leakage=LEAKAGE,
     orifice_smoothing_kpa=1e-3, slots='equal', lap=NO_LAP, hysteresis_percent=0.0,
-    threshold_percent=0.0, hysteresis_from_percent=20.0)
+    threshold_percent=0.0, hysteresis_from_percent=20.0, dead_band_percent=0.0,
+    compensated_drop_mpa=0.0)
 STRAIGHT = replace(SHEET, flow=StraightFlow(rated_current_ma=40.0, rated_flow_lpm=19.0))
 NO_BIAS = NullBias(
     current_ma=0.0, supply_ma_per_mpa=0.0, return_ma_per_mpa=0.0, temperature_ua_per_k=0.0,

@@ -7,7 +7,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import ParameterError
 from isa_ros.reu.dither import dither, Held
-from isa_ros.reu.wiring import KINDS, Held as HeldSpool
+from isa_ros.reu.wiring import Held as HeldSpool, KINDS
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, smart_actuator
@@ -17,7 +17,7 @@ RATED = 0.010   # A, of the model cylinder
 
 def current(**values: float) -> Held:
     """Return a current block of 10 kHz."""
-    return Held(rate_hz=1e4, **{'dither_percent': 2.0, 'dither_hz': 250.0} | values)
+    return Held(**{'rate_hz': 1e4, 'dither_percent': 2.0, 'dither_hz': 250.0} | values)
 
 
 def dithered(model: str = 'cylinder', variants: tuple[str, ...] = (),

@@ -1,11 +1,12 @@
 """`isa study`: list the studies, or run them, print, write and draw."""
 
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 import sys
+from typing import Any
 
-from isa_ros.analysis.studies import page, temperature
+from isa_ros.analysis.studies import hysteresis, page, servo_valve, temperature
 from isa_ros.analysis.studies.measure import Benches, results, Studied
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
@@ -25,8 +26,8 @@ def study(options: Namespace) -> None:
         There is no such study or model, or options that do not go together.
 
     """
-    if options.name == temperature.NAME:
-        _temperature(options)
+    if options.name in _OWN:
+        _own(options, _OWN[options.name])
         return
     chosen = _chosen(options)
     if not chosen:
@@ -42,22 +43,26 @@ def study(options: Namespace) -> None:
     write_wanted_page(page, done, options.out)
 
 
-def _temperature(options: Namespace) -> None:
-    """Run the study of the oil's temperature, which has a rig and a page of its own."""
+_OWN: Mapping[str, Any] = {own.NAME: own for own in (temperature, servo_valve, hysteresis)}
+"""The studies with a rig and a page of their own: modules, by name."""
+
+
+def _own(options: Namespace, module: Any) -> None:
+    """Run a study that has a rig and a page of its own."""
     for option in ('model', 'values', 'all'):
         if getattr(options, option):
-            raise ConfigError(f'--{option} is not used by the study {temperature.NAME}')
-    found = temperature.results(counted(sys.stderr, 'values', of=temperature.NAME))
-    print(temperature.as_text(found), flush=True)
-    write_wanted(temperature.as_tree(found), options.json)
-    write_wanted_page(temperature, found, options.out)
+            raise ConfigError(f'--{option} is not used by the study {module.NAME}')
+    found = module.results(counted(sys.stderr, 'values', of=module.NAME))
+    print(module.as_text(found), flush=True)
+    write_wanted(module.as_tree(found), options.json)
+    write_wanted_page(module, found, options.out)
 
 
 def listing() -> str:
     """Return every study, a line each."""
     return '\n'.join(aligned([
         *((one.name, one.title) for one in STUDIES),
-        (temperature.NAME, temperature.TITLE)]))
+        *((own.NAME, own.TITLE) for own in _OWN.values())]))
 
 
 def _chosen(options: Namespace) -> tuple[Study, ...]:
