@@ -156,6 +156,9 @@ def test_the_return_side_has_its_pressure() -> None:
         circuit.advance_held([0.0, 0.0], [6.0 * LPM * 1e-3, 0.0])
     assert circuit.pressures[0][1] == pytest.approx(0.23e6, abs=10.0)
     assert circuit.pressures[1][1] == circuit.pressures[0][1]
+    left = circuit.samples[1 + list(sheet_of(STATION).by_name).index('left')]
+    # what is given back has the energy of its pressure, and the actuators are paid for it (E1)
+    assert left['power'] == pytest.approx(-0.23e6 * 6.0 * LPM, rel=1e-4, abs=0.0)
     dirty = STATION.replace('lpm_per_mpa: 200.0', 'lpm_per_mpa: 200.0, clogged: 1.0')
     circuit.change(sheet_of(dirty))
     for _ in range(300):
