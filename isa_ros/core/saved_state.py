@@ -16,7 +16,7 @@ from typing import Any
 from isa_ros.core.atomic_file import replace_file
 from isa_ros.core.record import first_not_finite
 from isa_ros.core.signals import COMMAND, GAINS_OF_COMMAND, Records
-from isa_ros.errors import ConfigError, RunError
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 import numpy as np
 from numpy.typing import NDArray
 
@@ -149,6 +149,32 @@ def time_of(snapshot: bytes, step_ns: int, owner: str) -> int:
             f'{owner}: saved state at t = {t_ns} ns, must be a multiple of {step_ns} ns and less '
             f'than {MAX_TICKS} times as much')
     return t_ns
+
+
+def saved_body(t_ns: int, state: Records, sample: Records, owner: str) -> bytes:
+    """
+    Return the snapshot of a body: its time, ns, and the rows of its state and sample.
+
+    Raises
+    ------
+    SimulationDiverged
+        A number is not finite; ``owner`` names whose state it is.
+
+    """
+    for rows in (state, sample):
+        broken = broken_number(rows)
+        if broken is not None:
+            raise SimulationDiverged(t_ns, f'{owner}.{broken[0]}', broken[1])
+    return t_ns.to_bytes(TIME_BYTES, 'little') + state.tobytes() + sample.tobytes()
+
+
+def restored_body(
+        snapshot: bytes, state: np.dtype[np.void], sample: np.dtype[np.void], step_ns: int,
+        owner: str) -> tuple[int, Records, Records]:
+    """Return what `saved_body` has saved, a row each; raises as `time_of` and `restored_rows`."""
+    return (time_of(snapshot, step_ns, owner),
+            restored_rows(snapshot, state, 1, TIME_BYTES, owner),
+            restored_rows(snapshot, sample, 1, TIME_BYTES + state.itemsize, owner))
 
 
 def sealed(tree: Mapping[str, Any]) -> str:

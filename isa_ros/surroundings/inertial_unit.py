@@ -1,10 +1,12 @@
-"""Data sheet of an inertial measurement unit: rate, place on its link, and errors."""
+"""An inertial measurement unit on a link of any body: its data sheet, and what it reads."""
 
 from dataclasses import dataclass
 
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ParameterError
+
+AXES = 6  # numbers of a reading: specific force, then angular velocity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,3 +43,8 @@ class InertialUnitSheet(Parameters):
                 f'{where}.rate_hz = {self.rate_hz:g} Hz, its period must be a multiple of '
                 f'step_ms = {step_ns / 1e6:g} ms')
         return ticks * step_ns
+
+
+def fields_of_unit(name: str) -> tuple[str, str]:
+    """Return the fields of a sample with the reading of an inertial unit, of 3 numbers each."""
+    return f'{name}_specific_force', f'{name}_angular_velocity'

@@ -128,7 +128,7 @@ def with_inclinometer(copied: PatchedCopy) -> None:
         @kernel
         def read_imu(''').rstrip(' '))
     path = f'{leg}leg.py'
-    copied.replace(path, 'import AXES, Imu,', 'import AXES, calf_angle, Imu,')
+    copied.replace(path, 'leg.inertial import Imu,', 'leg.inertial import calf_angle, Imu,')
     copied.replace(path, 'units: Sequence[InertialUnit] = ()) -> None:',
                    'units: Sequence[InertialUnit] = (), has_calf: bool = False) -> None:')
     copied.replace(path, 'sample_fields([unit.name for unit in units])\n',

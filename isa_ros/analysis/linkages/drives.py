@@ -6,7 +6,7 @@ import math
 
 from isa_ros.config.robots.drives import Linkage
 from isa_ros.config.robots.geometry import motion_of, point, poses
-from isa_ros.config.robots.reach import Reach, reach_of
+from isa_ros.config.robots.reach import Reach, reach_of, swept
 from isa_ros.config.robots.urdf import Pose
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.leg_config import LegConfig
@@ -19,7 +19,7 @@ from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.robot.sheet import Points
 from isa_ros.surroundings.linkage import (
     actuator_coordinate, DIRECT, FOUR_BAR, rod_eye)
-from isa_ros.surroundings.linkage_sheet import CHECKED_ANGLES, Joint, linkage_record
+from isa_ros.surroundings.linkage_sheet import Joint, linkage_record
 import numpy as np
 from numpy.typing import NDArray
 
@@ -111,11 +111,9 @@ def _one_joint(
         start: float) -> tuple[object, DrawnDrive]:
     """Return the drive of a linkage of one joint."""
     own, row = run.actuator(actuator).sheet, linkage_record(sheet)
-    coordinates = np.linspace(
-        math.radians(sheet.low_deg), math.radians(sheet.high_deg), CHECKED_ANGLES)
-    moved = np.array([actuator_coordinate(q, row) for q in coordinates])
-    reach = Reach(name, True, coordinates, moved[:, 0], moved[:, 1])
-    ends = (coordinates[0], start, coordinates[-1])
+    reach = swept(name, True, math.radians(sheet.low_deg), math.radians(sheet.high_deg),
+                  lambda q: actuator_coordinate(q, row)[:2])
+    ends = (reach.coordinates[0], start, reach.coordinates[-1])
     stroke = own.plant.drive.stroke
     return (sheet, start, stroke), DrawnDrive(
         (name,), kind_of(sheet, Linkage), reach, start, float(actuator_coordinate(start, row)[0]),

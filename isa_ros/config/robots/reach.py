@@ -1,5 +1,6 @@
 """What a drive of a robot does over the range of its joint, and what it cannot do."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 import math
 
@@ -42,6 +43,15 @@ class Reach:
         return 'deg' if self.turns else 'mm'
 
 
+def swept(
+        joint: str, turns: bool, low: float, high: float,
+        at: Callable[[float], tuple[float, float]]) -> Reach:
+    """Return a drive over a range; ``at`` gives position and lever at a coordinate."""
+    coordinates = np.linspace(low, high, CHECKED_ANGLES)
+    positions, levers = np.array([at(float(q)) for q in coordinates]).T
+    return Reach(joint, turns, coordinates, positions, levers)
+
+
 def reach_of(
         sheet: RobotSheet, drive: RobotDrive, own: DriveConfig, joints: tuple[float, ...],
         place: Place) -> Reach | None:
@@ -73,15 +83,13 @@ def reach_of(
     if not math.isfinite(high - low):
         raise ConfigError(place.has(
             f'lacks range, which it needs: the joint {joint.name} of the URDF is continuous'))
-    coordinates = np.linspace(low, high, CHECKED_ANGLES)
-    found = []
-    for q in coordinates:
+
+    def at(q: float) -> tuple[float, float]:
         pose = list(joints)
-        pose[moved[0] - 1] = float(q)
+        pose[moved[0] - 1] = q
         x, levers = motion_of(sheet, drive, pose)
-        found.append((x, levers[0]))
-    positions, levers_of = np.array(found).T
-    return Reach(joint.name, turns, coordinates, positions, levers_of)
+        return x, levers[0]
+    return swept(joint.name, turns, low, high, at)
 
 
 def refuse_lever(

@@ -26,13 +26,12 @@ from isa_ros.core.parameter import choice
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion
-from isa_ros.surroundings.inertial_unit import InertialUnitSheet
+from isa_ros.surroundings.inertial_unit import AXES, InertialUnitSheet
 from isa_ros.surroundings.vectors import cross
 import numpy as np
 
 LINKS = ('slider_link', 'hip', 'thigh', 'calf')
 """Links of the URDF, from the rail to the foot."""
-AXES = 6  # numbers of a reading: specific force, then angular velocity
 
 
 @dataclass(frozen=True, kw_only=True)

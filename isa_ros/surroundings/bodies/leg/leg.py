@@ -13,13 +13,14 @@ from typing import NamedTuple
 
 from isa_ros.core.fields import Field, record_type, units_of
 from isa_ros.core.record import rows_of
-from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
+from isa_ros.core.saved_state import restored_body, saved_body
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.bodies.leg import port_kernel as kernels
-from isa_ros.surroundings.bodies.leg.inertial import AXES, Imu, imu_record, read_imu
+from isa_ros.surroundings.bodies.leg.inertial import Imu, imu_record, read_imu
 from isa_ros.surroundings.bodies.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, LegSheet
+from isa_ros.surroundings.inertial_unit import AXES, fields_of_unit
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
@@ -210,12 +211,7 @@ class Leg:
             A number of the state is not finite.
 
         """
-        for rows in (self._state, self._sample):
-            broken = broken_number(rows)
-            if broken is not None:
-                raise SimulationDiverged(self._t_ns, f'leg.{broken[0]}', broken[1])
-        return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
-                + self._sample.tobytes())
+        return saved_body(self._t_ns, self._state, self._sample, 'leg')
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -227,17 +223,9 @@ class Leg:
             A number is not finite, or the time is not that of a tick.
 
         """
-        t_ns = time_of(snapshot, self._step_ns, 'leg')
-        state = restored_rows(snapshot, LEG_STATE, 1, TIME_BYTES, 'leg')
-        sample = restored_rows(
-            snapshot, self._sample.dtype, 1, TIME_BYTES + state.nbytes, 'leg')
-        self._t_ns, self._state[:], self._sample[:] = t_ns, state, sample
+        self._t_ns, self._state[:], self._sample[:] = restored_body(
+            snapshot, LEG_STATE, self._sample.dtype, self._step_ns, 'leg')
         self._is_to_be_released = self._release_ns is not None and self.is_held
-
-
-def fields_of_unit(name: str) -> tuple[str, str]:
-    """Return the fields of a sample with the reading of an inertial unit, of 3 numbers each."""
-    return f'{name}_specific_force', f'{name}_angular_velocity'
 
 
 def sample_fields(names: Sequence[str]) -> tuple[Field, ...]:

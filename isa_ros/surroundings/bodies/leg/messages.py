@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, InertialUnit
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS
+from isa_ros.surroundings.inertial_unit import fields_of_unit
 from isa_ros.surroundings.messages import BodyMessage, columns, Force, Inertial, JointStates
 
 SLIDER = 'slider'

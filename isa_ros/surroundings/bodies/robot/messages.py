@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit
 from isa_ros.surroundings.bodies.leg.messages import JOINT_STATES
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet, RobotUnit
+from isa_ros.surroundings.inertial_unit import fields_of_unit
 from isa_ros.surroundings.messages import (
     BodyMessage, columns, Force, Inertial, JointStates, Odometry)
 

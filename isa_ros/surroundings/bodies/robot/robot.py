@@ -11,10 +11,9 @@ import math
 from isa_ros.core.fields import record_type, units_of
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.record import rows_of
-from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
+from isa_ros.core.saved_state import restored_body, saved_body
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.surroundings.bodies.leg.inertial import AXES
 from isa_ros.surroundings.bodies.robot import port_kernel as kernels
 from isa_ros.surroundings.bodies.robot.holding import holding_forces
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
@@ -24,6 +23,7 @@ from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
+from isa_ros.surroundings.inertial_unit import AXES
 from isa_ros.surroundings.vectors import first_broken
 import numpy as np
 
@@ -179,8 +179,9 @@ class Robot:
         self._take(replies['force'][self.rows])
         for name in self._ends_run:
             if self._sample[f'{name}_touches'][0]:
-                raise RunError(f'{name} touches the ground at t = {self._t_ns / 1e9:g} s: '
-                               'with ends_run the robot has fallen')
+                raise RunError(
+                    f'{name} touches the ground at t = {self._t_ns / NS_PER_SECOND:g} s: with '
+                    'ends_run the robot has fallen')
 
     def _refuse_broken(self, at: int) -> None:
         """Raise `SimulationDiverged` for a place in the state that is not finite; -1: none is."""
@@ -199,8 +200,8 @@ class Robot:
 
         """
         self._refuse_broken(int(first_broken(self._state)))
-        return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
-                + self._sample.tobytes())
+        return saved_body(
+            self._t_ns, self._state.view(self._saved_state), self._sample, 'robot')
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -212,12 +213,8 @@ class Robot:
             A number is not finite, or the time is not that of a tick.
 
         """
-        t_ns = time_of(snapshot, self._step_ns, 'robot')
-        state = restored_rows(
-            snapshot, self._saved_state, 1, TIME_BYTES, 'robot')
-        sample = restored_rows(
-            snapshot, self._sample.dtype, 1, TIME_BYTES + self._state.nbytes, 'robot')
-        self._t_ns, self._sample[:] = t_ns, sample
+        self._t_ns, state, self._sample[:] = restored_body(
+            snapshot, self._saved_state, self._sample.dtype, self._step_ns, 'robot')
         self._state[:] = state['state'][0]
         self._is_to_be_released = self._release_ns is not None and self.is_held
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from isa_ros.core.fields import Field
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit
 from isa_ros.surroundings.bodies.robot.sheet import JointLinkage, RobotDrive, RobotSheet
+from isa_ros.surroundings.inertial_unit import fields_of_unit
 from isa_ros.surroundings.linkage import DIRECT
 
 ROOT_FIELDS = (

@@ -122,6 +122,19 @@ def test_a_state_that_breaks_is_named() -> None:
         own.robot.snapshot()
 
 
+def test_a_sample_that_is_broken_is_not_saved() -> None:
+    """Nor read: what listeners have is part of the saved run."""
+    robot = made()
+    snapshot = bytearray(robot.snapshot())
+    name = robot.sample.dtype.names[-1]
+    robot.sample[name] = math.inf
+    with pytest.raises(SimulationDiverged, match=rf'robot\.{name}'):
+        robot.snapshot()
+    snapshot[-8:] = np.array(math.nan).tobytes()
+    with pytest.raises(ConfigError, match=f'robot: saved state has {name} = nan, must be finite'):
+        robot.restore(bytes(snapshot))
+
+
 def test_a_saved_state_that_is_broken_is_refused() -> None:
     robot = made()
     snapshot = bytearray(robot.snapshot())
