@@ -118,8 +118,7 @@ class Drive408(Drive):
     def _kinds(self, command: np.void) -> int:
         axis = self._axis
         has_tripped = axis.state in (FAULT_REACTION, FAULT)
-        is_off_in_reaction = self.state is State408.FAULT_REACTION and not axis.is_on
-        if self.state in HOLDING and not has_tripped and not is_off_in_reaction:
+        if self.state in HOLDING and not has_tripped:
             return self._operate(command)
         if self._is_stopping:
             return self._stopped(command)
