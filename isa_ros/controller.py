@@ -5,15 +5,16 @@ Independent of ROS; with `isa_ros.nodes.Participant` a controller takes part in 
 """
 
 from collections.abc import Mapping, Sequence
+from inspect import signature
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
+from isa_ros.core.device import FORCE, IMPEDANCE, MODES, POSITION, REFERENCES
 from isa_ros.core.signals import (
     COMMAND, GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP,
     HAS_REFERENCE, HAS_SETPOINT, Records, SAMPLE)
 from isa_ros.core.suggest import listed, shortened
-from isa_ros.errors import RunError, SetpointError
+from isa_ros.errors import ConfigError, RunError, SetpointError
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -117,6 +118,10 @@ class Controller:
             A value is refused.
 
         """
+        try:
+            signature(cls).bind(**values)
+        except TypeError as error:
+            raise ConfigError(f'{where}: {cls.__name__} {error}') from error
         return cls(**values)
 
     def start(self, names: Sequence[str]) -> None:
@@ -167,9 +172,13 @@ def fill_requests(
         if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
         row = requests[names.index(name)]
-        fill_command(name, Setpoint(*setpoint), row)
-        if samples is not None and math.isnan(row['position']):
-            _complete(name, samples[name], row)
+        own = Setpoint(*setpoint)
+        fill_command(name, own, row)
+        if samples is not None:
+            if own.effort is None:
+                refuse_without_effort(name, own, int(samples[name].device_mode))
+            if math.isnan(row['position']):
+                _complete(name, samples[name], row)
 
 
 def _fill_rows(
@@ -219,6 +228,26 @@ def _complete(name: str, sample: np.record, row: np.void) -> None:
     row['position'] = sample.position
 
 
+def refuse_without_effort(name: str, setpoint: Setpoint, mode: int) -> None:
+    """
+    Refuse a setpoint without the effort that its mode uses; ``mode`` is that in force.
+
+    Raises
+    ------
+    SetpointError
+        It has a position, and neither an effort nor the reference of its mode.
+
+    """
+    own = MODES.index(setpoint.mode) if setpoint.mode in MODES[1:] else mode
+    if (setpoint.position is not None and setpoint.effort is None
+            and own not in (0, POSITION, IMPEDANCE)
+            and all(getattr(setpoint, field) is None for field in REFERENCES)):
+        needed = 'effort' if own == FORCE else f'{MODES[own]}, or an effort,'
+        raise SetpointError(
+            f'{name}: setpoint position = {setpoint.position:g} needs its {needed} in mode '
+            f'{MODES[own]}, which does not use the position')
+
+
 def fill_command(name: str, setpoint: Setpoint, row: np.void) -> None:
     """
     Write the command of actuator ``name`` into its `COMMAND` row.
@@ -230,6 +259,7 @@ def fill_command(name: str, setpoint: Setpoint, row: np.void) -> None:
 
     """
     kinds = _fill_setpoint(name, setpoint, row) | _fill_mode(name, setpoint, row)
+    refuse_without_effort(name, setpoint, 0)
     for field in ('is_enabled', 'clear_fault', 'quick_stop'):
         value = getattr(setpoint, field)
         if value is not None and not isinstance(value, (bool, np.bool_)):

@@ -17,7 +17,7 @@ import warnings
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.controller import (
-    by_name, Controller, fill_requests, only_of, only_rows, Setpoint)
+    by_name, Controller, fill_requests, only_of, only_rows, refuse_without_effort, Setpoint)
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
@@ -82,7 +82,9 @@ class Simulation:
         controllers = [*self._controllers, *(own.made(run) for own in run.called)]
         if controllers:
             transport = CallingTransport(
-                transport, controllers, self.names, supplies, run.step_ns)
+                transport, controllers, self.names, supplies, run.step_ns,
+                [*(type(own).__name__ for own in self._controllers),
+                 *(own.called for own in run.called)])
         self.loop = TickLoop(
             run.step_ns, transport, self.surroundings,
             Rows(len(self.names), self.surroundings, self.group),
@@ -156,9 +158,11 @@ class Simulation:
 
         """
         row: Records = np.zeros(len(self.names), COMMAND)
-        fill_requests({name: Setpoint(**setpoint)}, self.names, row)  # type: ignore[arg-type]
+        given = Setpoint(**setpoint)  # type: ignore[arg-type]
+        fill_requests({name: given}, self.names, row)
         at = self.names.index(name)
         actuator = self.group.actuators[at]
+        refuse_without_effort(name, given, actuator.mode)
         if limited := actuator.admit(row[at]):
             warnings.warn(limited, stacklevel=2)
 

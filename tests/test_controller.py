@@ -90,6 +90,24 @@ def test_an_effort_needs_a_position_where_the_mode_uses_it(mode, in_force, is_re
     assert rows['kinds'][0] & HAS_SETPOINT
 
 
+@pytest.mark.parametrize(('setpoint', 'in_force', 'needed'), [
+    (Setpoint(0.03), FORCE, 'effort in mode force'),
+    (Setpoint(0.03, mode='force'), IMPEDANCE, 'effort in mode force'),
+    (Setpoint(0.03, mode='spool'), IMPEDANCE, 'spool, or an effort, in mode spool'),
+    (Setpoint(0.03, 0.0, 0.0, mode='force'), IMPEDANCE, ''), (Setpoint(mode='force'), FORCE, ''),
+    (Setpoint(0.03, mode='spool', spool=1e-4), FORCE, ''), (Setpoint(0.03), IMPEDANCE, ''),
+    (Setpoint(0.03, mode='position'), FORCE, ''), (Setpoint(0.03), POSITION, '')])
+def test_a_position_alone_is_refused_where_the_mode_uses_the_effort(setpoint, in_force, needed):
+    """Else a load that the effort bears falls: its effort would become 0."""
+    sample = np.zeros(1, SAMPLE).view(np.recarray)[0]
+    sample.device_mode = in_force
+    if needed:
+        with pytest.raises(SetpointError, match=f'position = 0.03 needs its {needed}'):
+            fill_requests({'haa': setpoint}, ['haa'], np.zeros(1, COMMAND), {'haa': sample})
+    else:
+        fill_requests({'haa': setpoint}, ['haa'], np.zeros(1, COMMAND), {'haa': sample})
+
+
 def test_an_unknown_actuator_is_refused_naming_those_there_are():
     with pytest.raises(SetpointError, match="'hip' is not an actuator of the run; valid: haa"):
         requests(hip=Setpoint(0.0))

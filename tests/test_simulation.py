@@ -321,7 +321,7 @@ def test_a_request_beyond_the_range_is_refused_or_limited_with_a_warning(beyond,
 
 def test_a_setpoint_for_an_unknown_actuator_ends_the_tick():
     simulation = Simulation(idle(RUN), [Counter('elbow')])
-    with pytest.raises(SetpointError, match="'elbow' is not an actuator of the run"):
+    with pytest.raises(RunError, match="'elbow' is not an actuator of the run"):
         simulation.step()
 
 

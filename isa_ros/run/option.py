@@ -14,6 +14,7 @@ from typing import Any
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
 
+_LONGEST_NAMESPACE = 100     # letters; a topic of DDS has at most 255 with all names that follow
 COMPRESSIONS = ('none', 'lz4', 'zstd')
 
 RosValue = bool | int | float | str | list[str]
@@ -181,7 +182,12 @@ def namespace(text: str) -> str:
         raise ConfigError(
             f'namespace = {text!r}, must be names of letters, digits and single _, separated by '
             'slashes, none beginning with a digit, for example left or robot1/left')
-    return text.strip('/')
+    own = text.strip('/')
+    if len(own) > _LONGEST_NAMESPACE:
+        raise ConfigError(
+            f'namespace = {own[:20]}... has {len(own)} letters, must have at most '
+            f'{_LONGEST_NAMESPACE}')
+    return own
 
 
 def flag(name: str, text: str) -> bool:

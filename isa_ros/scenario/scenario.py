@@ -6,7 +6,7 @@ of a body, or has controllers, gives its own `run`: the configuration to simulat
 replay.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 import math
@@ -75,7 +75,7 @@ class Scenario:
 
     def lasting(self, duration: float) -> 'Scenario':
         """
-        Return the scenario with another duration in s.
+        Return the scenario with another duration in s, without what begins after its end.
 
         Raises
         ------
@@ -83,7 +83,10 @@ class Scenario:
             The duration is not a positive whole number of ticks.
 
         """
-        return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
+        n_ticks = _duration(duration, self.run.step_ns, 'duration')
+        return replace(
+            self, n_ticks=n_ticks, tracks=tuple(_before(n_ticks, self.tracks)),
+            faults=tuple(fault for fault in self.faults if fault.tick < n_ticks))
 
     def with_faults(self, faults: Sequence[Tree]) -> 'Scenario':
         """
@@ -92,12 +95,15 @@ class Scenario:
         Raises
         ------
         ConfigError
-            As `read_faults`.
+            As `read_faults`; an index is that of ``faults``.
 
         """
-        place = Place(self.run.source, 'faults')
-        trees = [*(fault.tree(self.run.step_ns) for fault in self.faults), *faults]
-        return replace(self, faults=read_faults(trees, place, self.run, self.n_ticks))
+        place = Place('the given faults', 'faults')
+        added = read_faults(faults, place, self.run, self.n_ticks)
+        if self.faults:
+            _refuse_together(
+                (*self.faults, *added), self.run, f'faults of {self.name} and given ones')
+        return replace(self, faults=(*self.faults, *added))
 
     def refuse_bus(self) -> None:
         """
@@ -158,6 +164,14 @@ class Scenario:
         if self.faults:
             tree['faults'] = [fault.tree(self.run.step_ns) for fault in self.faults]
         return dump(tree)
+
+
+def _before(n_ticks: int, tracks: Sequence[Track]) -> Iterator[Track]:
+    """Yield the tracks up to a tick, those that have begun."""
+    for track in tracks:
+        events = tuple(event for event in track.events if event.tick < n_ticks)
+        if events:
+            yield replace(track, events=events)
 
 
 def idle(run: RunConfig, duration: float | None = None) -> Scenario:
@@ -230,16 +244,16 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     faults, others = (read_faults(tree.get(key, []), place / key, run, n_ticks)
                       for key in ('faults', 'changes'))
     if faults and others:
-        _refuse_together((*faults, *others), run, place)
+        _refuse_together((*faults, *others), run, f'{place}: faults and changes')
     return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), accepts_beyond,
                     tuple(limited), (*faults, *others))
 
 
-def _refuse_together(faults: Sequence[Fault], run: RunConfig, place: Place) -> None:
+def _refuse_together(faults: Sequence[Fault], run: RunConfig, what: str) -> None:
     try:
         refuse_changes(faults, run)
     except ConfigError as error:
-        raise ConfigError(f'{place}: faults and changes: {error}') from error
+        raise ConfigError(f'{what}: {error}') from error
 
 
 def _accepts_beyond(tree: Tree, place: Place) -> bool:

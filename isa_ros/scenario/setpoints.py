@@ -93,14 +93,21 @@ def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
 
 
 def _refuse_incomplete(tree: Tree, given: list[str], place: Place, mode: int) -> None:
-    """Refuse a point without the number that its mode needs."""
-    if 'position' in tree:
-        return
-    needs_position = 'position' in NUMBERS.get(mode, NUMBERS[FORCE])
-    if needs_position or EFFORT not in tree:
-        needed = f'position (or {HOLD!r})' if needs_position else EFFORT
+    """Refuse a point without the number that its mode needs; the others need not be given."""
+    if 'position' in NUMBERS.get(mode, NUMBERS[FORCE]):
+        missing = '' if POSITION in tree else f'position (or {HOLD!r})'
+    elif EFFORT in tree or MODES[mode] in tree or (POSITION in tree and _moves_effort(tree)):
+        missing = ''
+    else:
+        missing = EFFORT if mode == FORCE else f'{MODES[mode]}, or the {EFFORT}'
+    if missing:
         raise ConfigError(
-            f'{place}.{given[0]} is not enough: mode {MODES[mode]} needs the {needed}')
+            f'{place}.{given[0]} is not enough: mode {MODES[mode]} needs the {missing}')
+
+
+def _moves_effort(tree: Tree) -> bool:
+    sections = [tree[name] for name in WAVEFORMS if name in tree]
+    return any(isinstance(own, dict) and own.get(MOVES) == EFFORT for own in sections)
 
 
 def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,

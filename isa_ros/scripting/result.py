@@ -48,7 +48,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         self.bag = bag
         """The bag that it was read from; None: it was simulated."""
         self.problem = problem
-        """The reason why the configuration of a bag cannot be read here; or ''."""
+        """The reason why configuration or scenario of a bag cannot be read here; or ''."""
         self.log = log
         """The rows that the columns are views of."""
         self._provenance = bodies

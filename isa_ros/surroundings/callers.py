@@ -11,21 +11,25 @@ from numpy.typing import ArrayLike, NDArray
 
 
 @contextmanager
-def failures_of(owner: object, function: str) -> Iterator[None]:
-    """Raise `RunError` with the place in the caller's code where it fails."""
+def failures_of(function: str) -> Iterator[None]:
+    """Raise `RunError` with the place in the caller's code where it fails, or ends the program."""
     try:
         yield
     except IsaError:
         raise
-    except Exception as error:
-        raise RunError(f'{type(owner).__name__}.{function}: {cause_of(error)}') from error
+    except (Exception, SystemExit) as error:
+        raise RunError(f'{function}: {cause_of(error)}') from error
 
 
-def cause_of(error: Exception) -> str:
+def cause_of(error: BaseException) -> str:
     """Return an error as one line, with the place where it was raised."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
     said = ' '.join(str(error).split())
-    return f'{type(error).__name__}: {said} ({Path(place.filename).name}:{place.lineno})'
+    shown = f'{type(error).__name__}: {said}' if said else type(error).__name__
+    if isinstance(error, SyntaxError):      # its text has the place
+        return shown
+    frames = traceback.extract_tb(error.__traceback__)
+    place = next((one for one in reversed(frames) if not one.filename.startswith('<')), frames[-1])
+    return f'{shown} ({Path(place.filename).name}:{place.lineno})'
 
 
 def numbers_of(names: Sequence[str], what: str, given: ArrayLike) -> NDArray[np.float64]:

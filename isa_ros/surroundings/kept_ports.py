@@ -179,7 +179,7 @@ class RecordedBody(_Ports):
 
     def starts(self, starts: Records) -> None:
         """Fill the starts; as `Body.starts`."""
-        with failures_of(self._own, 'starts'):
+        with failures_of(f'{type(self._own).__name__}.starts'):
             self._own.starts(starts)
 
     def ports(self, ports: Records) -> None:
@@ -194,7 +194,7 @@ class RecordedBody(_Ports):
             A number of a port is not finite.
 
         """
-        with failures_of(self._own, 'ports'):
+        with failures_of(f'{type(self._own).__name__}.ports'):
             self._own.ports(ports)
         for name in PORT:
             self._ports[name] = ports[name][self.rows]
@@ -216,7 +216,7 @@ class RecordedBody(_Ports):
             A number of its sample is not finite.
 
         """
-        with failures_of(self._own, 'advance'):
+        with failures_of(f'{type(self._own).__name__}.advance'):
             self._own.advance(replies)
         self._copy()
         self._advance(replies)
@@ -230,12 +230,12 @@ class RecordedBody(_Ports):
 
     def snapshot(self) -> bytes:
         """Return the complete state; as `Body.snapshot`."""
-        with failures_of(self._own, 'snapshot'):
+        with failures_of(f'{type(self._own).__name__}.snapshot'):
             return self._snapshot(self._own.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`; as `Body.restore`."""
-        with failures_of(self._own, 'restore'):
+        with failures_of(f'{type(self._own).__name__}.restore'):
             self._own.restore(self._restore(snapshot))
         self._copy()
 

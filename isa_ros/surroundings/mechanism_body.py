@@ -116,7 +116,7 @@ class MechanismBody:
 
     def _motion(self, state: Floats, forces: Floats) -> Motion:
         """Return what the mechanism gives, as arrays; raises `RunError` if it fails."""
-        with failures_of(self._mechanism, 'motion'):
+        with failures_of(f'{type(self._mechanism).__name__}.motion'):
             place, speed, acceleration, *rest = self._mechanism.motion(state, forces)
             return Motion(
                 np.asarray(place, float), np.asarray(speed, float),
@@ -222,7 +222,7 @@ class MechanismBody:
 
         Raises `RunError` if the mechanism fails, `SimulationDiverged` if a number is not finite.
         """
-        with failures_of(self._mechanism, 'stepped'):
+        with failures_of(f'{type(self._mechanism).__name__}.stepped'):
             return self._checked_state(self._mechanism.stepped(
                 self._state, forces, self._mounting.step), len(self._state))
 

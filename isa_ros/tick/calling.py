@@ -6,7 +6,9 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.controller import (
     by_name, Controller, fill_requests, merge_requests, only_rows, State)
 from isa_ros.core.signals import COMMAND, Records
-from isa_ros.errors import ConfigError
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError, RunError, SetpointError
+from isa_ros.surroundings.callers import failures_of
 from isa_ros.tick.exchange import IDLE_S, Rows, Transport
 import numpy as np
 
@@ -17,12 +19,16 @@ class CallingTransport:
 
     ``names`` are those of the actuators and ``supplies`` those of the supplies, in the order of
     their rows. Where they request the same actuator as a node does, theirs is taken.
+    ``called`` is how messages call the first controllers; the others have the name of their class.
+
+    Every method raises `RunError` if a controller fails or returns no setpoints.
     """
 
     def __init__(
             self, transport: Transport, controllers: Sequence[Controller], names: Sequence[str],
-            supplies: Sequence[str], step_ns: int) -> None:
+            supplies: Sequence[str], step_ns: int, called: Sequence[str] = ()) -> None:
         self._transport, self._controllers = transport, tuple(controllers)
+        self._called = [*called, *(type(own).__name__ for own in controllers[len(called):])]
         self._names, self._supplies, self._step_ns = list(names), supplies, step_ns
         self._requests: Records = np.zeros(len(names), COMMAND)
         self.group = transport.group
@@ -34,8 +40,9 @@ class CallingTransport:
         self._state = State(
             0, by_name(self._names, rows.samples), by_name(self._supplies, rows.supplies),
             only_rows(rows.bodies), rows.samples)
-        for controller in self._controllers:
-            controller.start(list(self._names))
+        for called, controller in zip(self._called, self._controllers):
+            with failures_of(f'{called}.start'):
+                controller.start(list(self._names))
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         """Restore all participants from their snapshots, those of the controllers last."""
@@ -45,17 +52,24 @@ class CallingTransport:
                 f'the saved state has {len(snapshots)} participants, the run has '
                 f'{len(self._names) + len(self._controllers)}')
         self._transport.restore(tick, snapshots[:first], rows)
-        for controller, own in zip(self._controllers, snapshots[first:]):
-            controller.restore(own)
+        for called, controller, own in zip(
+                self._called, self._controllers, snapshots[first:]):
+            with failures_of(f'{called}.restore'):
+                controller.restore(own)
 
     def send(self, tick: int, rows: Rows) -> None:
         """Start the tick of the others, then call the controllers with the state before it."""
         self._transport.send(tick, rows)
         self._requests['kinds'] = 0
         state = self._state._replace(t_ns=tick * self._step_ns)
-        for controller in self._controllers:
-            fill_requests(
-                controller.step(state), self._names, self._requests, state.actuators)
+        for called, controller in zip(self._called, self._controllers):
+            where = f'{called}.step at t = {state.t_ns / NS_PER_SECOND:g} s'
+            with failures_of(where):
+                setpoints = controller.step(state)
+            try:
+                fill_requests(setpoints, self._names, self._requests, state.actuators)
+            except SetpointError as error:
+                raise RunError(f'{where}: {error}') from error
 
     def receive(self, rows: Rows) -> None:
         """Wait for the others, then add the requests of the controllers."""
@@ -68,8 +82,11 @@ class CallingTransport:
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant, those of the controllers last."""
-        return [*self._transport.snapshots(),
-                *(controller.snapshot() for controller in self._controllers)]
+        states = list(self._transport.snapshots())
+        for called, controller in zip(self._called, self._controllers):
+            with failures_of(f'{called}.snapshot'):
+                states.append(controller.snapshot())
+        return states
 
 
 def calling(run: RunConfig, transport: Transport) -> Transport:
@@ -86,4 +103,5 @@ def calling(run: RunConfig, transport: Transport) -> Transport:
         return transport
     return CallingTransport(
         transport, [own.made(run) for own in run.called], [own.name for own in run.actuators],
-        [own.name for own in run.sampled_supplies], run.step_ns)
+        [own.name for own in run.sampled_supplies], run.step_ns,
+        [own.called for own in run.called])

@@ -157,3 +157,10 @@ def test_the_options_import_neither_ros_nor_numba():
     result = subprocess.run(
         [sys.executable, '-S', '-c', program], capture_output=True, text=True, timeout=60)
     assert (result.stdout, result.stderr) == ('[]\n', '')
+
+
+def test_a_namespace_too_long_for_topics_is_refused():
+    """A topic of DDS has at most 255 letters, with the names that follow."""
+    assert option_of('namespace').of_argument('n' * 100) == 'n' * 100
+    with pytest.raises(ConfigError, match='has 101 letters, must have at most 100'):
+        option_of('namespace').of_argument('n' * 101)

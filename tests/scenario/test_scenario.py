@@ -150,6 +150,12 @@ def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
      "rotor[0].effort is not enough: mode impedance needs the position (or 'hold')"),
     ('  - {t_s: 0, mode: force, velocity: 3.0}\n',
      'rotor[0].velocity is not enough: mode force needs the effort'),
+    ('  - {t_s: 0, mode: force, position: 0.8}\n',
+     'rotor[0].position is not enough: mode force needs the effort'),
+    ('  - {t_s: 0, mode: force}\n  - {t_s: 0.1, position: 0.8}\n',
+     'rotor[1].position is not enough: mode force needs the effort'),
+    ('  - {t_s: 0, mode: current, position: 0.8}\n',
+     'rotor[0].position is not enough: mode current needs the current, or the effort'),
     ('  - {t_s: 0, mode: force, sine: {moves: effort, amplitude: 1, frequency_hz: 1}}\n',
      'rotor[0].sine is not enough: mode force needs the effort'),
     ('  - {t_s: 0, mode: force, effort: 1, sine: {amplitude: 1, frequency_hz: 1}}\n',
@@ -262,3 +268,29 @@ def test_a_scenario_may_name_the_figure_it_is_drawn_as(rotary: RunConfig) -> Non
 def test_an_unknown_figure_is_refused(text: str, expected: str, rotary: RunConfig) -> None:
     with pytest.raises(ConfigError, match=expected):
         scenario_of(f'name: s\nfigure: {text}\nduration_s: 1\n', rotary)
+
+
+def test_a_shortened_scenario_has_what_begins_before_its_end(rotary):
+    """As it is stored with the bag, where its file is read again."""
+    whole = of_track('  - {t_s: 0.1, position: 0.8}\n  - {t_s: 0.5, position: 0.9}\n', rotary)
+    whole = whole.with_faults([
+        {'t_s': 0.2, 'actuator': 'rotor', 'fault': 'valve_stuck', 'until_s': 0.9},
+        {'t_s': 0.6, 'supply': 'supply', 'set': {'pressure_mpa': 10.0}}])
+    half = whole.lasting(0.5)
+    assert [event.tick for event in half.tracks[0].events] == [100]
+    assert [fault.tick for fault in half.faults] == [200]
+    assert scenario_of(half.to_yaml(), rotary) == half
+    assert whole.lasting(0.1).tracks == ()
+    assert scenario_of(whole.lasting(0.1).to_yaml(), rotary) == whole.lasting(0.1)
+
+
+def test_a_refused_fault_is_called_by_its_place_in_the_given_list(rotary):
+    """Not by that in a list which the faults of the file precede."""
+    whole = of_track('  - {t_s: 0.1, position: 0.8}\n', rotary).with_faults(
+        [{'t_s': 0.6, 'supply': 'supply', 'set': {'pressure_mpa': 10.0}}])
+    late = {'t_s': 0.2, 'actuator': 'rotor', 'fault': 'valve_stuck'}
+    assert [fault.tick for fault in whole.lasting(0.3).with_faults([late]).faults] == [200]
+    with pytest.raises(ConfigError) as refused:
+        whole.lasting(0.2).with_faults([late])
+    assert str(refused.value) == (
+        'the given faults: faults[0].t_s = 0.2 s, must be < duration_s = 0.2 s')

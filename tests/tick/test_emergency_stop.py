@@ -14,6 +14,7 @@ from isa_ros.core.device import DISABLED, ENABLED, FAULT, QUICK_STOP
 from isa_ros.core.signals import COMMAND, HAS_ENABLE
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import recorded_inputs
+from isa_ros.scenario.scenario import scenario_of
 from isa_ros.scripting.run import Run
 from isa_ros.simulation import Simulation
 from isa_ros.tick.emergency_stop import LONGEST_STOP
@@ -359,8 +360,8 @@ def test_without_that_trip_the_scenario_comes_back():
     assert result['supply.dump_opening'][-1] < 0.01
     text = isa_ros.load(tree(), alone).scenario.to_yaml()
     assert 'emergency_stop: pair' in text
-    again = isa_ros.load(tree(), alone).scenario.with_faults([])
-    assert again.faults == isa_ros.load(tree(), alone).scenario.faults
+    own = isa_ros.load(tree(), alone).scenario
+    assert scenario_of(text, own.run).faults == own.faults
 
 
 @pytest.mark.parametrize('at', [20, 200, 380])

@@ -36,7 +36,8 @@ def read(bag: str | Path) -> Result:
     It has the columns that messages have, as sensors and listeners had them: NaN at ticks without
     one, accounts at those of `/diagnostics`. ``scenario`` has the configuration and the commands.
     Of a bag whose configuration another version wrote, `Result.problem` says so, and
-    ``scenario.run`` has names, kinds and units only.
+    ``scenario.run`` has names, kinds and units only. So it does if the scenario cannot be read,
+    which then has no commands.
 
     Raises
     ------
@@ -61,18 +62,20 @@ def read(bag: str | Path) -> Result:
     log = log._replace(
         applied=applied, tuned=history.tuned, tuned_supplies=history.tuned_supplies,
         observed=log.samples if run.linked else None)
+    scenario, problem = _scenario(opened, signals)
     return Result(
-        _scenario(opened, signals), log,
-        {body.name: units_of(body.fields) for body in run.bodies}, path, signals.problem)
+        scenario, log, {body.name: units_of(body.fields) for body in run.bodies}, path,
+        signals.problem or problem)
 
 
-def _scenario(bag: Bag, signals: Signals) -> Scenario:
-    """Return the scenario of a bag; without commands if another version wrote it."""
+def _scenario(bag: Bag, signals: Signals) -> tuple[Scenario, str]:
+    """Return the scenario of a bag; the idle one, and the reason, if it cannot be read."""
     n_ticks = round(float(signals.time[-1]) * NS_PER_SECOND) / NS_PER_SECOND
     try:
-        return scenario_of(bag.provenance.scenario, signals.run, f'{bag.path}: {SCENARIO}')
-    except ConfigError:
-        return idle(signals.run, n_ticks or None)
+        return scenario_of(
+            bag.provenance.scenario, signals.run, f'{bag.path}: {SCENARIO}'), ''
+    except ConfigError as error:
+        return idle(signals.run, n_ticks or None), str(error)
 
 
 def _empty(run: RunConfig, n: int) -> Log:

@@ -39,6 +39,11 @@ class ControllerConfig:
         """Return the key of its section."""
         return f'{CONTROLLERS}.{self.name}'
 
+    @property
+    def called(self) -> str:
+        """Return how messages call it: its key and its class."""
+        return f'{self.label}: {self.maker.partition(":")[2]}'
+
     def made(self, run: Any) -> Controller:
         """
         Return a new controller for a `RunConfig`: each simulation has its own.
@@ -51,19 +56,19 @@ class ControllerConfig:
             Its class cannot be imported, or refuses its values; or there is no such robot.
 
         """
-        made: object = imported_factory(self.maker, f'{self.label}.{CLASS}')
+        where, robot = f'{run.source}: {self.label}', parted(self.name)[0]
+        made: object = imported_factory(self.maker, f'{where}.{CLASS}', CLASS)
         if not (isinstance(made, type) and issubclass(made, Controller)):
             raise ConfigError(
-                f'{self.label}.{CLASS} = {self.maker}: must be a class derived from '
+                f'{where}.{CLASS} = {self.maker}: must be a class derived from '
                 'isa_ros.Controller')
-        where, robot = f'{run.source}: {self.label}', parted(self.name)[0]
         alone = one_robot(run, robot, where) if robot else run
         try:
             own = made.of(alone, self.values, where)
         except IsaError:
             raise
-        except Exception as error:
-            raise ConfigError(f'{self.label}: {cause_of(error)}') from error
+        except (Exception, SystemExit) as error:
+            raise ConfigError(f'{where}: {cause_of(error)}') from error
         return of_its_robot(own, self.name, run, where)
 
 

@@ -110,7 +110,7 @@ class ExternalConfig(BodyConfig):
             given = factory(mounting)
         except IsaError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise ConfigError(f'{self.label}: its factory: {cause_of(error)}') from error
         if isinstance(given, GivenBody):
             return given
@@ -144,9 +144,11 @@ class ExternalConfig(BodyConfig):
             refuse_start(own, float(starts[row]['position']), f'{self.label}: ')
 
 
-def imported_factory(maker: str, where: str) -> BodyFactory:
+def imported_factory(maker: str, where: str, what: str = 'function') -> BodyFactory:
     """
     Return the factory ``module:factory``, of an installed module or a file in this folder.
+
+    ``what`` it should be, for messages.
 
     Raises
     ------
@@ -163,11 +165,14 @@ def imported_factory(maker: str, where: str) -> BodyFactory:
         found = import_module(module)
     except ImportError as error:
         raise ConfigError(f'{where} = {maker}: {error}') from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ConfigError(f'{where} = {maker}: {cause_of(error)}') from error
-    factory = getattr(found, name, None)
+    if not hasattr(found, name):
+        raise ConfigError(f'{where} = {maker}: {module} has no {what} {name}')
+    factory = getattr(found, name)
     if not callable(factory):
-        raise ConfigError(f'{where} = {maker}: {module} has no function {name}')
+        raise ConfigError(
+            f'{where} = {maker}: {name} is of type {type(factory).__name__}, must be a {what}')
     checked: BodyFactory = factory
     return checked
 

@@ -59,3 +59,33 @@ class Counting(Puller):
 def pull(run, values, where):
     """Return a controller, but not as a class."""
     return Puller(**values)
+
+
+NO_CLASS = 3
+
+
+class Failing(Controller):
+    """Returns what it is given at its third tick, or raises it."""
+
+    def __init__(self, found: object) -> None:
+        self._found, self._calls = found, 0
+
+    def start(self, names):
+        """Count from zero."""
+        self._calls = 0
+
+    def step(self, state):
+        """Return nothing at first."""
+        self._calls += 1
+        if self._calls < 3:
+            return {}
+        if isinstance(self._found, BaseException):
+            raise self._found
+        return self._found
+
+
+class Leaving(Failing):
+    """Ends the program."""
+
+    def __init__(self, code: int) -> None:
+        super().__init__(SystemExit(code))

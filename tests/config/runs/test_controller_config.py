@@ -5,11 +5,11 @@ from dataclasses import replace
 import isa_ros
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.text.yaml_text import parse
-from isa_ros.controller import Controller
-from isa_ros.errors import ConfigError
+from isa_ros.controller import Controller, Setpoint
+from isa_ros.errors import ConfigError, RunError
 import numpy as np
 import pytest
-from tests.config.runs.pullers import Puller
+from tests.config.runs.pullers import Failing, Puller
 
 PULLER = 'tests.config.runs.pullers:Puller'
 COUNTING = 'tests.config.runs.pullers:Counting'
@@ -141,10 +141,15 @@ def test_refused_as_the_file_is_read(controllers, message):
 
 @pytest.mark.parametrize('section, message', [
     ({'class': 'no_such_module:Pull'}, 'no_such_module'),
-    ({'class': 'tests.config.runs.pullers:Missing'}, 'has no function Missing'),
+    ({'class': 'tests.config.runs.pullers:Missing'},
+     'leg.yaml: controllers.pull.class = tests.config.runs.pullers:Missing: '
+     'tests.config.runs.pullers has no class Missing'),
+    ({'class': 'tests.config.runs.pullers:NO_CLASS'},
+     'NO_CLASS is of type int, must be a class'),
+    ({'class': PULLER, 'force': 2.0, 'actuator': 'hfe', 'farce': 2.0},
+     "leg.yaml: controllers.pull: Puller got an unexpected keyword argument 'farce'"),
     ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
     ({'class': 'collections:OrderedDict'}, 'must be a class derived from isa_ros.Controller'),
-    ({'class': PULLER, 'farce': 2.0}, 'farce'),
     ({'class': PULLER, 'force': -1.0, 'actuator': 'hfe'},
      'leg.yaml: controllers.pull: force = -1 N, must be >= 0 N')])
 def test_refused_before_the_run_begins(section, message):
@@ -153,6 +158,27 @@ def test_refused_before_the_run_begins(section, message):
     assert 'controllers.pull' in str(refused.value)
     assert message in str(refused.value)
     assert str(refused.value).count('controllers.pull') == 1
+
+
+@pytest.mark.parametrize('found, message', [
+    (ValueError('no\nway'), 'ValueError: no way (pullers.py:'),
+    (SystemExit(0), 'SystemExit: 0 (pullers.py:'),
+    ({'rom': Setpoint(0.0)}, "'rom' is not an actuator of the run; valid: ram"),
+    (3, '3 are no setpoints by actuator'),
+    ({'ram': Setpoint(float('nan'))}, 'ram: setpoint position = nan, must be finite')])
+def test_a_controller_that_fails_ends_the_run_with_its_name_and_time(found, message):
+    """The exit code is that of a body that raises."""
+    with pytest.raises(RunError) as ended:
+        isa_ros.load('rig_linear').simulate(0.01, controllers=[Failing(found)])
+    assert str(ended.value).startswith(f'Failing.step at t = 0.002 s: {message}')
+    assert ended.value.exit_code == 3
+
+
+def test_one_of_a_run_file_has_its_key_too():
+    run = isa_ros.load('rig_linear', changes={'controllers': {
+        'c': {'class': 'tests.config.runs.pullers:Leaving', 'code': 7}}})
+    with pytest.raises(RunError, match=r'^controllers\.c: Leaving\.step at t = 0\.002 s: SystemE'):
+        run.simulate(0.01)
 
 
 def test_two_classes_may_request_the_same_actuator_the_last_wins():
