@@ -5,7 +5,7 @@ from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.cushion import divide
-from isa_ros.plant.plant import exact_force, rest_pressures
+from isa_ros.plant.plant import exact_force, rest_oil
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.block_drive import LONG_AGO
@@ -25,8 +25,7 @@ def rest_plant(
     port.supply_pressure, port.return_pressure = supply, back
     state.plant.mechanics.position = position
     state.load.position = position - force / own.plant.mechanics.k_s
-    state.plant.chambers.p_a, state.plant.chambers.p_b = rest_pressures(
-        own.plant, supply, back, force)
+    rest_oil(own.plant, supply, back, force, state.plant)
     divide(state.plant, own.plant)
     thermal.oil = thermal.body = own.plant.thermal.start
     reply = row_record(memory.replies)

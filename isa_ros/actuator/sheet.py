@@ -16,6 +16,7 @@ from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.cushion_sheets import refuse_cushions
+from isa_ros.plant.hose import soft_volume
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool, ResponseSpool
 from isa_ros.plant.stated_curves import SidesFlow
@@ -204,6 +205,8 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     The REU knows the plant without its faults.
     """
     known = plant_record(sound(sheet.plant))
+    if known[0].hoses.is_on:    # the oil of a hose is as soft as more of it in the chamber
+        known[0].chambers.dead_volume += soft_volume(known[0].hoses)
     reu = reu_record(
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),

@@ -27,7 +27,8 @@ class Unit(NamedTuple):
 
 NOT_SI = {
     'mm': Unit('m', MILLI), 'um': Unit('m', MICRO), 'mm2/s': Unit('m2/s', MICRO),
-    'l': Unit('m3', LITRE), 'ml': Unit('m3', MILLILITRE), 'cc/rad': Unit('m3/rad', MILLILITRE),
+    'l': Unit('m3', LITRE), 'ml': Unit('m3', MILLILITRE), 'ml/m': Unit('m2', MILLILITRE),
+    'cc/rad': Unit('m3/rad', MILLILITRE),
     'MPa': Unit('Pa', MPA), 'kPa': Unit('Pa', 1e3), 'deg': Unit('rad', math.radians(1.0)),
     'ms': Unit('s', MILLI), 'us': Unit('s', MICRO), 'mA': Unit('A', MILLI),
     'l/min': Unit('m3/s', LPM), 'l/min/MPa': Unit('m3/s/Pa', LPM, MPA),

@@ -10,13 +10,18 @@ from dataclasses import dataclass
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
+from isa_ros.errors import ParameterError
 from isa_ros.plant import (
-    block_valve, chambers, coil, cushion, drives, friction, hysteresis, mechanics, relief, sensors,
-    spool, thermal, valve_record)
+    block_valve, chambers, coil, cushion, drives, friction, hose, hysteresis, load_holding,
+    mechanics, relief, sensors, spool, thermal, valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
+from isa_ros.plant.counterbalance import CounterbalanceHolding
 from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, trapped_area
-from isa_ros.plant.service_lines import rigid_lines
+from isa_ros.plant.hose import LumpedHoses, NoneHoses
+from isa_ros.plant.load_holding import NoneHolding
+from isa_ros.plant.pilot_check import PilotCheckHolding
+from isa_ros.plant.service_lines import holding_record, hosed_lines, rest_lines, rigid_lines
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -36,6 +41,8 @@ PLANT = np.dtype([
     ('hysteresis', hysteresis.HYSTERESIS),
     ('cushion_a', cushion.CUSHION),
     ('cushion_b', cushion.CUSHION),
+    ('hoses', hose.HOSES),
+    ('holding_a', load_holding.HOLDING), ('holding_b', load_holding.HOLDING),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -45,7 +52,11 @@ PLANT_STATE = np.dtype([
     ('mechanics', mechanics.MECHANICS_STATE),
     ('block', block_valve.BLOCK_STATE),
     ('cushion', cushion.CUSHION_STATE),
+    ('lines', hose.LINES_STATE),
 ])
+
+
+EVERY_STEP = 1e9    # m3: every chamber is smaller, so that every step is one of volumes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +74,21 @@ class PlantSheet(Parameters):
     sensors: sensors.Sensors
     thermal: NoneThermal | LumpedThermal = nested(NoneThermal())
     block_valve: NoneBlock | PoppetBlock = nested(NoneBlock())
+    hoses: NoneHoses | LumpedHoses = nested(NoneHoses())
+    holding_a: NoneHolding | PilotCheckHolding | CounterbalanceHolding = nested(NoneHolding())
+    holding_b: NoneHolding | PilotCheckHolding | CounterbalanceHolding = nested(NoneHolding())
+
+    def __post_init__(self) -> None:
+        """Refuse load-holding valves without hoses, and a wall that makes oil stiffer."""
+        super().__post_init__()
+        if isinstance(self.hoses, LumpedHoses):
+            hose.per_wall(self.hoses, self.oil.effective_bulk_modulus)
+            return
+        for name in ('holding_a', 'holding_b'):
+            if not isinstance(getattr(self, name), NoneHolding):
+                raise ParameterError(
+                    f'{name}: a load-holding valve compares the pressures of the lines, which '
+                    'only hoses have; set hoses.kind: lumped')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +121,9 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     shift = valve_record.null_shift(sheet.valve, rated)
     own_spool = spool.spool_record(sheet.spool, celsius, lands.x_max, shift)
     oil = chambers.chambers_record(sheet.drive, sheet.oil, sheet.mechanics.inertia)
+    hoses = hose.hoses_record(sheet.hoses, oil)
+    if hoses.is_on:     # what leaves a hose enters its chamber: only volumes keep the oil (C40)
+        oil.least_a = oil.least_b = EVERY_STEP
     seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
@@ -111,6 +140,9 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
             own_spool),
         block=block_valve.block_record(sheet.block_valve),
         hysteresis=hysteresis.hysteresis_record(sheet.valve, rated),
+        hoses=hoses,
+        holding_a=holding_record(sheet.holding_a),
+        holding_b=holding_record(sheet.holding_b),
         **_cushions(sheet),
         )], PLANT).view(np.recarray)
 
@@ -124,6 +156,14 @@ def _cushions(sheet: LinearPlant | RotaryPlant) -> dict[str, np.record]:
             for name, own in (('cushion_a', sheet.cushion_a), ('cushion_b', sheet.cushion_b))}
 
 
+def null_pressures(plant: np.record, supply: float, back: float) -> tuple[float, float]:
+    """Return the pressures (Pa) into which the leaking lands divide that of the supply at null."""
+    lands, span = plant.valve, supply - back
+    share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
+    share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
+    return back + span * share_a, back + span * share_b
+
+
 def rest_pressures(
         plant: np.record, supply: float, back: float, force: float) -> tuple[float, float]:
     """
@@ -132,11 +172,8 @@ def rest_pressures(
     At null the leaking lands divide the supply pressure; the rest of the force comes in equal
     parts from both chambers, as far as their pressures stay between return and supply.
     """
-    lands, oil = plant.valve, plant.chambers
-    share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
-    share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
-    span = supply - back
-    p_a, p_b = back + span * share_a, back + span * share_b
+    oil = plant.chambers
+    p_a, p_b = null_pressures(plant, supply, back)
     lacking = force - chambers.hydraulic_force(p_a, p_b, oil)
     p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
 
@@ -149,6 +186,19 @@ def rest_pressures(
         p_a = possible(p_a)
         p_b = (oil.area_a * p_a - force) / oil.area_b
     return possible(p_a), possible(p_b)
+
+
+def rest_oil(
+        plant: np.record, supply: float, back: float, force: float, state: np.record) -> None:
+    """
+    Put chambers and hoses of a `PLANT_STATE` at the pressures of rest.
+
+    A hose has the pressure of its chamber, or behind a load-holding valve that of the null.
+    """
+    state.chambers.p_a, state.chambers.p_b = rest_pressures(plant, supply, back, force)
+    null_a, null_b = null_pressures(plant, supply, back)
+    rest_lines(plant, (null_a if plant.holding_a.kind else state.chambers.p_a,
+                       null_b if plant.holding_b.kind else state.chambers.p_b), state.lines)
 
 
 @kernel
@@ -180,8 +230,13 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     else:
         p_a, p_b, more_a, more_b = y.chambers.p_a, y.chambers.p_b, 0.0, 0.0
         per_a, per_b = chambers.elastances(s, plant.chambers)
-    q_a, q_b, q_p, q_t = rigid_lines(
-        y, p_a, p_b, per_a, per_b, p_s, p_t, plant, rates, counts, powers)
+    if plant.hoses.is_on > 0.0:
+        q_a, q_b, q_p, q_t, stored, spilt = hosed_lines(
+            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers)
+    else:
+        stored = spilt = 0.0
+        q_a, q_b, q_p, q_t = rigid_lines(
+            y, p_a, p_b, per_a, per_b, p_s, p_t, plant, rates, counts, powers)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     in_a, in_b, push, lost, kept, wider_a, wider_b = cushion.pass_spears(
         y.cushion, s, v, (p_a, per_a, more_a, in_a), (p_b, per_b, more_b, in_b), plant,
@@ -215,6 +270,9 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
         powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
         powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b) + kept
+        if plant.hoses.is_on > 0.0:
+            powers.cross_port += spilt
+            powers.compression += stored
         slip = v - v_load
         powers.friction = f_friction * v
         powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v

@@ -16,6 +16,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
 from isa_ros.plant.coil import coil_current
 from isa_ros.plant.mechanics import sensor_force
+from isa_ros.plant.service_lines import sensed_pressures
 from isa_ros.plant.temperature_sensor import (
     TEMPERATURE_SENSOR, temperature_sensor_record, TemperatureSensor)
 import numpy as np
@@ -103,7 +104,7 @@ def sense(step, period, y, x_load, v_load, supply_pressure, plant, key, state, m
     own, at = plant.sensors, y.mechanics
     measured.position = at.position
     measured.force = sensor_force(at.position, at.velocity, x_load, v_load, plant.mechanics)
-    measured.pressure_a, measured.pressure_b = y.chambers.p_a, y.chambers.p_b
+    measured.pressure_a, measured.pressure_b = sensed_pressures(y, plant)
     measured.spool = y.spool.position
     measured.current = coil_current(y.coil, plant.coil)
     if not own.errors.are_ideal:

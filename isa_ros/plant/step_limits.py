@@ -11,8 +11,11 @@ import math
 from typing import NamedTuple
 
 from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP, PLANT_STEP_NS
+from isa_ros.core.units import MILLI
 from isa_ros.errors import ParameterError
 from isa_ros.plant.coil import EXPLICIT
+from isa_ros.plant.hose import soft_volume
+from isa_ros.plant.load_holding import least_lag, NO_HOLDING
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import DIRECT, PILOTED
 from isa_ros.plant.thermal import coldest, warm
@@ -82,12 +85,31 @@ def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
         smallest change first, and their bounds.
 
     """
+    _refuse_lags(plant)
     _refuse(plant, sheet, load, '')
     if plant.thermal.is_on:
         for celsius in (coldest(plant.thermal), _HOTTEST):
             warmed = plant.copy()
             warm(celsius, warmed)
             _refuse(warmed, sheet, load, f' with oil at {celsius:g} celsius')
+
+
+def _refuse_lags(plant: np.record) -> None:
+    """Refuse a load-holding valve that swings on its oil faster than a step resolves."""
+    if not plant.hoses.is_on:
+        return
+    at_hose = plant.hoses.beta / soft_volume(plant.hoses)
+    at_chamber = plant.chambers.beta / plant.chambers.dead_volume
+    for name in ('holding_a', 'holding_b'):
+        own = plant[name]
+        if own.kind == NO_HOLDING:
+            continue
+        least = least_lag(own, at_chamber, at_hose, plant.relief.p_open)
+        if own.lag < least:
+            raise ParameterError(
+                f'plant.{name}.lag_ms = {own.lag / MILLI:g} ms, must be >= {least / MILLI:.3g} ms '
+                'with its flow, its opening_mpa and the oil at both ends, for the plant step of '
+                f'{PLANT_STEP_NS / 1e3:g} us')
 
 
 def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
@@ -248,6 +270,8 @@ def _actuator(
     per_b = oil.beta / (oil.dead_volume + oil.area_b * (oil.stroke - place))
     open_a, open_b = _conductances(plant.valve, is_open)
     open_a, open_b = min(open_a, FASTEST_RATE / per_a), min(open_b, FASTEST_RATE / per_b)
+    if plant.hoses.is_on:   # through which a chamber decays at most at half of it  (C42)
+        open_a, open_b = 0.5 * FASTEST_RATE / per_a, 0.5 * FASTEST_RATE / per_b
     return np.array([
         [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [-(own.k_s + own.k_stop) / m, -damping / m, -rubs.sigma0 / m,

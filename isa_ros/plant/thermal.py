@@ -15,6 +15,7 @@ from isa_ros.core.elementary import expm1
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.plant.hose import warm_hoses
 from isa_ros.plant.oil_properties import (
     MineralOil, PROPERTIES, properties_record, softness, thickness)
 import numpy as np
@@ -112,6 +113,8 @@ def warm(celsius, plant):
     plant.valve.q_0 = own.q_0 * plant.valve.leak_factor
     plant.friction.sigma2 = own.sigma2 * thicker
     plant.chambers.beta = own.beta / softness(celsius, own.oil)
+    if plant.hoses.is_on > 0.0:
+        warm_hoses(thicker, plant.chambers.beta, plant.hoses)
     plant.spool.bias = own.bias + own.bias_per_k * (celsius - own.oil.celsius)
 
 

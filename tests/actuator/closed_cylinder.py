@@ -1,13 +1,17 @@
 """A cylinder with closed ports: its steps by the kernels, and what scipy says of the same."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 import math
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.integration import flat, rk4_steps, scratch
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.plant.service_lines import rest_lines
 import numpy as np
 from scipy.integrate import solve_ivp
 from tests.sheets import actuator_sheet, override
@@ -27,13 +31,15 @@ class ClosedCylinder:
 
     ``values`` are of its sheet, ``oil__dead_volume_ml`` for example. Without ``refill`` both
     chambers are sealed. The load moves as `move` says; of a ``free`` one nothing but the oil acts
-    on the piston.
+    on the piston. ``parts`` replace those of its plant.
     """
 
     def __init__(
             self, model: str, place: float, pressure: float, *, refill: bool = False,
-            free: bool = False, **values: Any) -> None:
+            free: bool = False, parts: Mapping[str, Parameters] = MappingProxyType({}),
+            **values: Any) -> None:
         sheet = actuator_sheet(model)
+        sheet = replace(sheet, plant=replace(sheet.plant, **parts))
         for path, value in values.items():
             sheet = override(sheet, f'plant.{path.replace("__", ".")}', value)
         self.constants = actuator_record(sheet, 0)
@@ -52,6 +58,7 @@ class ClosedCylinder:
         self.own = self.state.plant
         self.own.mechanics.position = self.state.load.position = place
         self.own.chambers.p_a = self.own.chambers.p_b = pressure
+        rest_lines(plant, (pressure, pressure), self.own.lines)
 
     def move(self, steps: int = 1, acceleration: float = 0.0) -> None:
         """Take plant steps with the load at an acceleration (m/s2 | rad/s2)."""
