@@ -6,6 +6,7 @@ from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MICRO, MILLI
 from isa_ros.plant.hysteresis import widest_play
+from isa_ros.plant.hose import largest_resistance
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
 from isa_ros.reu.block import Pid
@@ -19,6 +20,7 @@ import numpy as np
 _CERTAIN = 0.2  # of the spool's stop: open whatever the null bias
 _CREEP = 0.02   # of the speed at full opening: slower is no motion towards a reference
 _SLOW = 0.0064  # s, 25 Hz: what is slower is no oscillation of a loop
+_ANY = 1e12       # N | Nm: more than any force
 _MEAN = 0.05    # s: some periods of such an oscillation
 
 
@@ -60,13 +62,27 @@ def valve_lag(plant: np.record, reu: Reu) -> float:
 
 def evidence_of(
         plant: np.record, reu: Reu, has_spool_sensor: bool, offset_steps: int) -> np.record:
-    """Return the `EVIDENCE` record of a `PLANT` record and its REU."""
-    steps = loop_steps(reu)
+    """
+    Return the `EVIDENCE` record of a `PLANT` record and its REU.
+
+    The sensors read hoses: their drop is like friction, and behind a load-holding valve they say
+    nothing about the force.
+    """
+    steps, oil = loop_steps(reu), plant.chambers
+    stiction, viscous = plant.friction.stiction, plant.friction.sigma2
+    if plant.holding_a.kind or plant.holding_b.kind:
+        stiction = _ANY
+    elif plant.hoses.is_on:
+        flow = ratings_of(plant).speed * max(oil.area_a, oil.area_b)
+        viscous += (oil.area_a * oil.area_a + oil.area_b * oil.area_b) * largest_resistance(
+            plant.hoses, flow)
     return record(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
         force_range=plant.sensors.force_range, stiction=plant.friction.stiction,
         viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia,
         end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
+        force_range=plant.sensors.force_range, stiction=stiction, viscous=viscous,
+        inertia=plant.mechanics.inertia,
         speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
         valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
 

@@ -202,6 +202,12 @@ def hoses_record(sheet: NoneHoses | LumpedHoses, oil: np.record) -> np.record:
     return own
 
 
+def largest_resistance(hoses: np.record, flow: float) -> float:
+    """Return the drop over its flow (Pa s/m3) at a flow in m3/s, the largest up to there."""
+    smooth = hoses.laminar if flow <= hoses.critical else hoses.linear + hoses.square * flow
+    return float(smooth + hoses.fittings * flow)
+
+
 @kernel
 def soft_volume(hoses):
     """Return V (1 + beta/K_w), the volume of oil that is as soft as a hose, in m3  (C40)."""
