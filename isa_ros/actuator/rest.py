@@ -5,7 +5,8 @@ from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.cushion import divide
-from isa_ros.plant.plant import exact_force, rest_oil
+from isa_ros.plant.plant import exact_force
+from isa_ros.plant.rest_oil import rest_oil
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.block_drive import LONG_AGO

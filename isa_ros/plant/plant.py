@@ -21,7 +21,7 @@ from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, trapped_area
 from isa_ros.plant.hose import LumpedHoses, NoneHoses
 from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.pilot_check import PilotCheckHolding
-from isa_ros.plant.service_lines import holding_record, hosed_lines, rest_lines, rigid_lines
+from isa_ros.plant.service_lines import holding_record, hosed_lines, rigid_lines
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -154,51 +154,6 @@ def _cushions(sheet: LinearPlant | RotaryPlant) -> dict[str, np.record]:
         return {'cushion_a': none, 'cushion_b': none}
     return {name: cushion.cushion_record(own, trapped_area(own, sheet.drive.bore_mm))
             for name, own in (('cushion_a', sheet.cushion_a), ('cushion_b', sheet.cushion_b))}
-
-
-def null_pressures(plant: np.record, supply: float, back: float) -> tuple[float, float]:
-    """Return the pressures (Pa) into which the leaking lands divide that of the supply at null."""
-    lands, span = plant.valve, supply - back
-    share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
-    share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
-    return back + span * share_a, back + span * share_b
-
-
-def rest_pressures(
-        plant: np.record, supply: float, back: float, force: float) -> tuple[float, float]:
-    """
-    Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
-
-    At null the leaking lands divide the supply pressure; the rest of the force comes in equal
-    parts from both chambers, as far as their pressures stay between return and supply.
-    """
-    oil = plant.chambers
-    p_a, p_b = null_pressures(plant, supply, back)
-    lacking = force - chambers.hydraulic_force(p_a, p_b, oil)
-    p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
-
-    def possible(p: float) -> float:
-        return min(max(p, back), supply)
-    if p_b != possible(p_b):
-        p_b = possible(p_b)
-        p_a = (force + oil.area_b * p_b) / oil.area_a
-    elif p_a != possible(p_a):
-        p_a = possible(p_a)
-        p_b = (oil.area_a * p_a - force) / oil.area_b
-    return possible(p_a), possible(p_b)
-
-
-def rest_oil(
-        plant: np.record, supply: float, back: float, force: float, state: np.record) -> None:
-    """
-    Put chambers and hoses of a `PLANT_STATE` at the pressures of rest.
-
-    A hose has the pressure of its chamber, or behind a load-holding valve that of the null.
-    """
-    state.chambers.p_a, state.chambers.p_b = rest_pressures(plant, supply, back, force)
-    null_a, null_b = null_pressures(plant, supply, back)
-    rest_lines(plant, (null_a if plant.holding_a.kind else state.chambers.p_a,
-                       null_b if plant.holding_b.kind else state.chambers.p_b), state.lines)
 
 
 @kernel

@@ -16,7 +16,7 @@ from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.loads.sheets import Blocked, Mass, static_force
-from isa_ros.plant.plant import rest_pressures
+from isa_ros.plant.rest_oil import rest_pressures
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import around, Entry, Findings, OWN
 from isa_ros.validation.plant_theory import (

@@ -16,7 +16,7 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import LPM, MILLI, MPA
-from isa_ros.plant.plant import rest_pressures
+from isa_ros.plant.rest_oil import rest_pressures
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.behaviour import bench, MODELS, SHUT
 from isa_ros.validation.entry import around, Entry, Findings, OWN

@@ -23,7 +23,7 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record
 from isa_ros.plant.chambers import begin_volumes, elastances, end_volumes, volumes
 from isa_ros.plant.mechanics import sensor_force
-from isa_ros.plant.plant import rest_pressures
+from isa_ros.plant.rest_oil import rest_pressures
 import numpy as np
 from scipy.integrate import solve_ivp
 
