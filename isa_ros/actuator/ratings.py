@@ -5,8 +5,8 @@ import math
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MICRO, MILLI
-from isa_ros.plant.hysteresis import widest_play
 from isa_ros.plant.hose import largest_resistance
+from isa_ros.plant.hysteresis import widest_play
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
 from isa_ros.reu.block import Pid
@@ -20,7 +20,7 @@ import numpy as np
 _CERTAIN = 0.2  # of the spool's stop: open whatever the null bias
 _CREEP = 0.02   # of the speed at full opening: slower is no motion towards a reference
 _SLOW = 0.0064  # s, 25 Hz: what is slower is no oscillation of a loop
-_ANY = 1e12       # N | Nm: more than any force
+_ANY = 1e12     # N | Nm: more than any force
 _MEAN = 0.05    # s: some periods of such an oscillation
 
 
@@ -78,8 +78,6 @@ def evidence_of(
             plant.hoses, flow)
     return record(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
-        force_range=plant.sensors.force_range, stiction=plant.friction.stiction,
-        viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia,
         end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
         force_range=plant.sensors.force_range, stiction=stiction, viscous=viscous,
         inertia=plant.mechanics.inertia,
