@@ -45,7 +45,7 @@ def driven(circuit: Circuit, ticks: int, rng: np.random.Generator) -> float:
     through = 0.0
     for _ in range(ticks):
         drawn = rng.uniform(-2.0, 8.0, 2) * LPM * 1e-3
-        returned = drawn * rng.uniform(0.8, 1.2, 2)
+        returned = drawn * rng.uniform(0.3, 0.9, 2)
         circuit.advance_held(drawn.tolist(), returned.tolist())
         through += float(abs(drawn).sum() + abs(returned).sum())
     return through
