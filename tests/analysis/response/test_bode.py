@@ -240,3 +240,14 @@ def test_a_step_that_is_not_followed_is_said_so():
     assert 'does not follow' not in stopped
     lost = summary(step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.06, 7000.0))
     assert 'does not follow' in lost
+
+
+def test_a_valve_with_hysteresis_is_told_beside_its_response(measured):
+    """The gain of a play depends on the amplitude; without one nothing is said."""
+    sheet = measured.loop.sheet
+    valve = replace(sheet.plant.valve, hysteresis_percent=3.0)
+    worn = replace(measured, loop=replace(measured.loop, sheet=replace(
+        sheet, plant=replace(sheet.plant, valve=valve))))
+    assert 'hysteresis' not in '\n'.join(conclusions(measured))
+    assert conclusions(worn)[-1].startswith(
+        'the valve has 3 % hysteresis: gain and phase are those of this amplitude')
