@@ -19,13 +19,14 @@ Read the lists ``faults`` and ``changes`` of a scenario.
 Keys and units are those of `isa params`; both lists have the same form.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
 from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.config.models.bus_port import SOUND_PORT
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
+from isa_ros.config.runs.emergency_stops import ALL
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import kind_of
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
@@ -66,9 +67,10 @@ def read_faults(
     faults = []
     for k, one in enumerate(value):
         below = Place(place.file, f'{place.key}[{k}]')
-        fault = _fault(section_at(one, below), below, run)
-        _refuse_after_end(fault, below, run.step_ns, n_ticks)
-        faults.append(fault)
+        for each in _of_groups(section_at(one, below), run):
+            fault = _fault(each, below, run)
+            _refuse_after_end(fault, below, run.step_ns, n_ticks)
+            faults.append(fault)
     try:
         refuse_changes(faults, run)
     except ConfigError as error:
@@ -117,6 +119,14 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
         raise ConfigError(f'{where}: {error}') from error
     kind = of if of in (SUPPLY, BUS, BODY) else ACTUATOR
     return with_course(Fault(tick, until, kind, target, values), tree, known, run.step_ns, place)
+
+
+def _of_groups(tree: Tree, run: RunConfig) -> Sequence[Tree]:
+    """Return a fault; an emergency stop of all as one of each group of the run."""
+    names = [own.name for own in run.stop_groups]
+    if tree.get(EMERGENCY_STOP) != ALL or ALL in names:
+        return (tree,)
+    return [tree | {EMERGENCY_STOP: name} for name in names]
 
 
 def _refuse_port(values: Mapping[str, float], known: Mapping[str, Changeable], tree: Tree,

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.config.runs.controller_config import CONTROLLERS, controllers_at
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_config import ROBOTS, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
-from isa_ros.config.text.names import name_of
+from isa_ros.config.text.names import name_of, parted
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import dump, parse, read, Tree
 from isa_ros.core.parameter import check
@@ -219,6 +219,7 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
+    _refuse_robots(tree, run, place)
     tree = with_robots(tree, place)
     refuse_unknown(
         tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', CONTROLLERS,
@@ -247,6 +248,15 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
         _refuse_together((*faults, *others), run, f'{place}: faults and changes')
     return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), accepts_beyond,
                     tuple(limited), (*faults, *others))
+
+
+def _refuse_robots(tree: Tree, run: RunConfig, place: Place) -> None:
+    """Refuse robots that the run does not have."""
+    robots = [*dict.fromkeys(filter(None, (parted(own.name)[0] for own in run.actuators)))]
+    for name in section_at(tree.get(ROBOTS, {}), place / ROBOTS):
+        if name not in robots:
+            known = alternatives(name, robots) if robots else 'it has no robots'
+            raise ConfigError(f'{place / ROBOTS / name} is not a robot of {run.source}; {known}')
 
 
 def _refuse_together(faults: Sequence[Fault], run: RunConfig, what: str) -> None:

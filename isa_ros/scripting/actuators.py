@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from isa_ros.config.runs.external_config import refuse_start
+from isa_ros.config.runs.external_config import refuse_force, refuse_start
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.scripting.log import LogSink
@@ -64,7 +64,8 @@ class Actuators:
         Raises
         ------
         ConfigError
-            A position is outside the stroke of its actuator, or a number is not finite.
+            A position is outside the stroke of its actuator, its relief valves would open under a
+            force, or a number is not finite.
 
         """
         configured = {own.name: own for own in self._run.configuration.actuators}
@@ -75,6 +76,8 @@ class Actuators:
             self.names, 'force', force)
         for each, place in zip(own, self._port['x0'].tolist()):
             refuse_start(each, place)
+        for each, borne in zip(own, self._port['force'].tolist()):
+            refuse_force(each, borne)
         simulation = self._run.simulation(self._controllers, body=self._body)
         self._log = LogSink(simulation, _FIRST_TICKS)
         simulation.loop.sinks = (self._log,)

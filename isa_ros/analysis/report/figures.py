@@ -22,11 +22,12 @@ def figures(signals: Signals, events: Sequence[Event] = ()) -> dict[str, Figure]
     """
     Return the figures of a run by name: the legs first, then every actuator.
 
-    A line at each trip of an actuator among ``events`` is drawn in its figure.
+    What was not recorded is left out. A line at each trip of an actuator among ``events`` is drawn
+    in its figure.
     """
     drawn = {}
     for leg in signals.run.legs:
-        if not signals.problem or {f'{leg.name}.{name}' for name in _OF_LEG} <= set(signals):
+        if {f'{leg.name}.{name}' for name in _OF_LEG} <= set(signals):
             drawn[leg.kind if leg.name == BODY else leg.name] = leg_figure(leg, signals)
     for actuator in signals.run.actuators:
         drawn[actuator.name] = actuator_figure(actuator, signals)
@@ -56,7 +57,7 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
         else (1e3, 'mm', 'force, N'))
 
     def of(field: str) -> Signal:
-        return signals.over_time(f'{actuator.name}.{field}')
+        return signals.drawn(f'{actuator.name}.{field}')
 
     for ax, field, factor, label in (
             (position, 'position', scale, f'position, {unit}'), (force, 'force', 1.0, load),
@@ -66,7 +67,7 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
         ax.set_ylabel(label)
     for name, signal, color in (
             ('A', of('pressure_a'), 'C2'), ('B', of('pressure_b'), 'C4'),
-            ('supply', signals.supply_pressure(actuator.name), 'gray')):
+            ('supply', signals.drawn(signals.supply_of(actuator.name)), 'gray')):
         pressure.plot(signal.t, signal.values / MPA, label=name, color=color)
     pressure.set_ylabel('pressure, MPa gauge')
     return finish(figure, (position, force, pressure, valve))

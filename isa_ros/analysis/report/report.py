@@ -98,17 +98,20 @@ def _refuse_others(page: Path) -> None:
 
 
 def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
-    """Return (signal, least, greatest, unit) of every actuator and ground's force."""
+    """Return (signal, least, greatest, unit) of each actuator and ground's force, as recorded."""
     values = []
     for actuator in signals.run.actuators:
         name = actuator.name
-        pressures = [signals[f'{name}.pressure_{side}'] / MPA for side in 'ab']
+        pressures = [signals.drawn(f'{name}.pressure_{side}').values / MPA for side in 'ab']
         for signal, series, unit in (
                 *((field, signals[f'{name}.{field}'], signals.unit(f'{name}.{field}'))
-                  for field in ('position', 'force')),
+                  for field in ('position', 'force') if f'{name}.{field}' in signals),
                 ('pressure', np.concatenate(pressures), 'MPa gauge')):
-            values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
+            if len(series):
+                values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
     for leg in signals.run.legs:
+        if f'{leg.name}.foot_force' not in signals:
+            continue
         ground = signals[f'{leg.name}.foot_force'][:, 2]
         values.append((
             f'{leg.prefix}ground force', float(ground.min()), float(ground.max()), 'N'))

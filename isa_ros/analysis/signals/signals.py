@@ -81,10 +81,18 @@ class Signals(Mapping[str, Values]):
             raise BagError(f'{self._source}: {name} is missing, was its topic left out?')
         return self._signals[name]
 
+    def drawn(self, name: str) -> Signal:
+        """Return a signal as `over_time`; without values if it was not recorded."""
+        return self._signals.get(name, Signal(np.zeros(0), np.zeros(0)))
+
+    def supply_of(self, actuator: str) -> str:
+        """Return the name of the pressure of the supply that feeds an actuator."""
+        supply = next(own for own in self.run.supplies if actuator in own.feeds)
+        return f'{supply.sampled_at(actuator)}.pressure'
+
     def supply_pressure(self, actuator: str) -> Signal:
         """Return the pressure of the supply that feeds an actuator; as `over_time`."""
-        supply = next(own for own in self.run.supplies if actuator in own.feeds)
-        return self.over_time(f'{supply.sampled_at(actuator)}.pressure')
+        return self.over_time(self.supply_of(actuator))
 
     def unit(self, name: str) -> str:
         """Return the unit of a signal."""
@@ -133,7 +141,7 @@ def read_signals(bag: Path, *, needs_values: bool = True) -> Signals:
     if problem and needs_values:
         raise ConfigError(problem)
     if '/clock' not in traces:
-        raise BagError(f'{bag}: has no samples')
+        raise BagError(f'{bag}: has no samples, or /clock, which has their time, was left out')
     return Signals(run, dict(_named(run, traces)), traces['/clock'].t, str(bag), problem)
 
 

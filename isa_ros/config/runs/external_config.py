@@ -9,15 +9,18 @@ from typing import Any, ClassVar
 from weakref import WeakSet
 
 from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.ratings import ratings_of
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, NAMES, TEXT
 from isa_ros.config.text.names import parted
 from isa_ros.config.text.sections import Place, Section
+from isa_ros.core.changeable import sound
 from isa_ros.core.fields import Field
 from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
+from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.callers import cause_of
 from isa_ros.surroundings.kept_ports import (
@@ -175,6 +178,18 @@ def imported_factory(maker: str, where: str, what: str = 'function') -> BodyFact
             f'{where} = {maker}: {name} is of type {type(factory).__name__}, must be a {what}')
     checked: BodyFactory = factory
     return checked
+
+
+def refuse_force(own: ActuatorConfig, force: float) -> None:
+    """Raise `ConfigError` if the relief valves would open under a force, N | Nm."""
+    plant = plant_record(sound(own.sheet.plant))[0]
+    opening = ratings_of(plant).opening_pressure
+    pulled, pushed = opening * plant.chambers.area_b, opening * plant.chambers.area_a
+    if not -pulled <= force <= pushed:
+        unit = 'Nm' if own.sheet.is_rotary else 'N'
+        raise ConfigError(
+            f'{own.name} starts with a force of {force:g} {unit}, must be {-pulled:.4g} to '
+            f'{pushed:.4g} {unit}, at which its relief valves open')
 
 
 def refuse_start(own: ActuatorConfig, place: float, where: str = '') -> None:

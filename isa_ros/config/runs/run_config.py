@@ -6,6 +6,7 @@ import hashlib
 from typing import Any
 
 from isa_ros.actuator.link import LinkSheet, NO_LINK
+from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.models.links import LINK
 from isa_ros.config.models.wires import refuse_overfull
 from isa_ros.config.runs.acceptance import ACCEPT, ACCEPT_ALL
@@ -29,6 +30,7 @@ from isa_ros.config.text.names import COORDINATOR, parted, refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
 from isa_ros.core.noise import seed_of
+from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet
@@ -316,6 +318,7 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     for name, own in values['actuators'].items():
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
+        _refuse_without_model(name, values['actuators'], below)
         actuator, layers = actuator_of(name, own, below / name, Around(
             step_ns, values[LINK], moved.get(name), is_checked))
         actuators.append(actuator)
@@ -332,6 +335,15 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
                        if name in values})
     return run.with_controllers(controllers.nodes).calling(controllers.called), origins
+
+
+def _refuse_without_model(name: str, actuators: Mapping[str, Any], place: Place) -> None:
+    """Refuse an actuator without model; it may be meant as another one of the run."""
+    if actuators[name]['model'] is not None or actuators[name]['sheet'] is not None:
+        return
+    others = [key for key, own in actuators.items() if own['model'] is not None]
+    meant = f'; if one of the others is meant: {alternatives(name, others)}' if others else ''
+    raise ConfigError(f'{place / name} lacks model, one of {listed(model_names())}{meant}')
 
 
 def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:

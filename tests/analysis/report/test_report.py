@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import isa_ros
 from isa_ros.analysis.report.report import extremes, write_report
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.cli.main import main
@@ -52,6 +53,17 @@ def test_extremes_are_those_of_the_signals():
     assert values['rotor force'] == (torque.min(), torque.max(), 'Nm')
     assert values['rotor position'][2] == 'rad'
     assert 17.0 < values['rotor force'][1] < 17.0 * 1.5
+
+
+@pytest.mark.parametrize('topic', ['references', 'valve', 'joint_states', 'pressure_a', 'state'])
+def test_what_was_not_recorded_is_left_out(tmp_path, topic):
+    """The rest is drawn; README shows a filter without references."""
+    isa_ros.load('rig_linear', changes={'record': {'leave_out': [f'/*/{topic}']}}).simulate(
+        0.01).save(tmp_path / 'bag')
+    written = write_report(tmp_path / 'bag', tmp_path / 'page.html')
+    assert [path.name for path in written] == ['page.html', 'page_ram.png']
+    rows = {name for name, *_ in extremes(read_signals(tmp_path / 'bag'))}
+    assert ('ram position' in rows) is (topic != 'joint_states')
 
 
 @pytest.mark.parametrize('name', ['missing', 'empty'])

@@ -7,8 +7,10 @@ import isa_ros
 from isa_ros.config.listing import describe
 from isa_ros.config.paths import CONFIG, find, find_drawing
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import dump, read
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.scenario import read_scenario, scenario_of
 import pytest
 
 PUMP = {'kind': 'constant', 'pressure_mpa': 16.0, 'return_pressure_mpa': 0.0}
@@ -215,3 +217,29 @@ def test_the_table_of_a_run_has_the_sources_of_its_robots(tmp_path: Path):
     pressure = [next(line for line in own[f'{robot}/supply of pair.yaml']
                      if line.startswith('pressure_mpa')) for robot in BOTH]
     assert '20.7' in pressure[0] and ' 14 ' in pressure[1]
+
+
+def test_another_value_of_an_unknown_actuator_is_answered_with_those_there_are():
+    """The section would be a new actuator, which has no model."""
+    with pytest.raises(ConfigError) as refused:
+        of(legs(actuators={'kfee': {'preset': 'table_4'}}))
+    assert 'robots.r2.actuators.kfee lacks model, one of ' in str(refused.value)
+    assert str(refused.value).endswith('if one of the others is meant: did you mean kfe?')
+
+
+def test_an_emergency_stop_of_all_is_one_of_every_robot():
+    run = of(pair())
+    stops = scenario_of(
+        'name: s\nduration_s: 1\nfaults: [{t_s: 0.5, emergency_stop: all}]', run).faults
+    assert [(own.tick, own.of, own.target) for own in stops] == [
+        (500, 'emergency_stop', 'r1'), (500, 'emergency_stop', 'r2')]
+
+
+@pytest.mark.parametrize('tree, message', [
+    (pair(), 's: robots.r3 is not a robot of pair.yaml; valid: r1, r2'),
+    ('leg', 's: robots.r3 is not a robot of leg.yaml; it has no robots')])
+def test_a_scenario_of_robots_that_the_run_does_not_have_is_refused(tree, message):
+    run = of(tree) if isinstance(tree, dict) else isa_ros.load(tree).configuration
+    with pytest.raises(ConfigError) as refused:
+        read_scenario({'name': 's', 'robots': {'r3': {'file': 'drop'}}}, Place('s'), run)
+    assert str(refused.value) == message

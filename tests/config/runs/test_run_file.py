@@ -179,7 +179,7 @@ def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Pa
      'rig.yaml: actuators.ram.load.inertia = 0 kg, must be > 0'),
     ('model: isa_v5, load: {kind: external}',
      'wood; a load that a program gives is body: {kind: external, actuators: [NAME]}'),
-    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: cylinder'),
+    ('load: {kind: mass}', 'rig.yaml: actuators.ram lacks model, one of cylinder, isa_v2'),
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
     ('model: isa_v5, load: {kind: mass}, parameters: {plant: {friction: {viscous: 9e5}}}',
