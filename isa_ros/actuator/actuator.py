@@ -117,6 +117,8 @@ class SmartActuator:
         """
         self.t_ns = 0
         self._saved.clear()
+        self.memory.feeds.fill(0)
+        self.memory.fed.fill(0)
         self.accept(gains_command(self.tuning.reset(position)))
         if self._changed_mode is not None:
             self.change_mode(self._changed_mode)

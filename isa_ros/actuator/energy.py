@@ -24,15 +24,17 @@ def stored_elastically(state, mechanics):
 
 
 @kernel
-def add_energies(reply, port, energies, elastic, seconds, sample):
+def add_energies(reply, port, feed, energies, elastic, seconds, sample):
     """
     Add one tick of ``seconds`` to the account of a `SAMPLE`.
 
     ``reply`` has the volumes of the tick, ``energies`` its `ENERGIES`, and ``elastic`` is by how
-    much `stored_elastically` grew in it, J. Both pressures of ``port`` are constant over a tick.
+    much `stored_elastically` grew in it, J. Both pressures of ``port`` are constant over a tick,
+    but that of the supply where ``feed``, its `SUPPLY_PORT`, has an elastance.
     """
-    hydraulic = (port.supply_pressure * reply.supply_volume
-                 - port.return_pressure * reply.return_volume)      # (E1)
+    drawn = (energies.drawn if feed.elastance > 0.0
+             else port.supply_pressure * reply.supply_volume)
+    hydraulic = drawn - port.return_pressure * reply.return_volume      # (E1)
     sample.power = hydraulic / seconds
     sample.peak_power = max(sample.peak_power, sample.power)
     sample.hydraulic_energy += hydraulic

@@ -71,6 +71,16 @@ class ActuatorGroup:
         return self._memory.replies
 
     @property
+    def feeds(self) -> Records:
+        """Return the `SUPPLY_PORT` of all for the next tick, (n,), to be filled; 0: held."""
+        return self._memory.feeds
+
+    @property
+    def fed(self) -> Records:
+        """Return the `SUPPLY_REPLY` of all, (n,), as `replies`."""
+        return self._memory.fed
+
+    @property
     def samples(self) -> Records:
         """Return the `SAMPLE` of all at the end of the last tick, (n,); overwritten."""
         return self._memory.samples

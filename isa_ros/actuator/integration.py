@@ -10,6 +10,7 @@ states need four.
 
 import math
 
+from isa_ros.actuator.feed import conductance, FEED_STATE, pressure_rate, VARIED
 from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.loads.forces import LOAD_STATE, own_load_force
 from isa_ros.loads.port import load_acceleration
@@ -17,6 +18,7 @@ from isa_ros.plant.chambers import is_of_volumes
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import (
     begin_volumes, end_volumes, plant_rates, PLANT_STATE, settle)
+from isa_ros.plant.servo_valve import tare_flow
 import numpy as np
 
 TOTALS = np.dtype([
@@ -25,7 +27,8 @@ TOTALS = np.dtype([
     ('return_volume', 'f8'),    # given to the return, m3
     ('energies', ENERGIES),     # by Simpson's rule over the steps, not by their stages
 ])
-CONTINUOUS = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
+CONTINUOUS = np.dtype([
+    ('plant', PLANT_STATE), ('load', LOAD_STATE), ('supply', FEED_STATE), ('totals', TOTALS)])
 """Every continuous state of an actuator and its load copy; floats only."""
 
 STATE_SIZE = CONTINUOUS.itemsize // 8
@@ -57,16 +60,27 @@ def state_name(index: int) -> str:
 
 
 @kernel
-def write_rates(tau, y, drive, port, actuator, of_volumes, rates, counts):
+def write_rates(tau, y, drive, port, feed, actuator, of_volumes, rates, counts):
     """
     Write the derivative of a `CONTINUOUS` into ``rates``; its powers only if it ``counts``.
 
-    ``of_volumes``: within a step of volumes, between `begin_volumes` and `end_volumes`.
+    ``feed`` is its `SUPPLY_PORT`: where it has an elastance, the pressure of the supply moves
+    (C15), and the pilot stage is part of what is drawn at it. ``of_volumes``: within a step of
+    volumes, between `begin_volumes` and `end_volumes`.
     """
+    p_s, p_t = y.supply.pressure, port.return_pressure
     force, q_p, q_t = plant_rates(
-        y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, of_volumes, rates.plant,
-        counts, rates.totals.energies)
+        y.plant, y.load.position, y.load.velocity, drive, p_s, p_t, actuator.plant, of_volumes,
+        rates.plant, counts, rates.totals.energies, feed.elastance * feed.share)
+    rates.supply.pressure = 0.0
+    if feed.elastance > 0.0:
+        tare = tare_flow(p_s, p_t, actuator.plant.valve)
+        q_p += tare
+        q_t += tare
+        rates.supply.pressure = pressure_rate(tau, p_s - port.supply_pressure, q_p, feed)
+        if counts:
+            rates.totals.energies.leakage += tare * (p_s - p_t)
+            rates.totals.energies.drawn = p_s * q_p
     own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
     rates.load.velocity = load_acceleration(
@@ -103,18 +117,19 @@ def add_powers(weight, y, k):
 
 
 @part_of_kernel
-def stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k):
+def stages(h, tau, drive, port, feed, actuator, of_volumes, continuous, rates, y, k):
     """Write the four rates of a classical Runge-Kutta step of ``h`` seconds."""
-    write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
+    write_rates(tau, continuous[0], drive, port, feed, actuator, of_volumes, rates[0], True)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, of_volumes, rates[1], False)
+    half = tau + 0.5 * h
+    write_rates(half, continuous[1], drive, port, feed, actuator, of_volumes, rates[1], False)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, of_volumes, rates[2], False)
+    write_rates(half, continuous[1], drive, port, feed, actuator, of_volumes, rates[2], False)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + h * k[2, j]
-    write_rates(tau + h, continuous[1], drive, port, actuator, of_volumes, rates[3], False)
+    write_rates(tau + h, continuous[1], drive, port, feed, actuator, of_volumes, rates[3], False)
 
 
 @kernel
@@ -127,7 +142,7 @@ def is_torn(h, state, rates):
 
 
 @part_of_kernel
-def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
+def rk4_step(h, tau, drive, port, feed, actuator, continuous, rates, y, k, weight):
     """
     Advance ``continuous[0]`` by one classical Runge-Kutta step of ``h`` seconds.
 
@@ -141,7 +156,7 @@ def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
     while True:
         if of_volumes:
             begin_volumes(own, actuator.plant)
-        stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k)
+        stages(h, tau, drive, port, feed, actuator, of_volumes, continuous, rates, y, k)
         if of_volumes or not is_torn(h, own.chambers, rates):
             break
         of_volumes = True
@@ -155,25 +170,41 @@ def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
 
 
 @kernel
-def end_steps(tau, weight, drive, port, actuator, continuous, rates, y, k):
-    """Add the powers after the last step with their ``weight``, in s."""
+def end_steps(tau, weight, drive, port, feed, actuator, continuous, rates, y, k):
+    """
+    Add the powers after the last step with their ``weight``, in s; return dq/dP of the valve.
+
+    Flow over pressure of the supply, in m3/s/Pa, between `VARIED` above and below; the flow is
+    that of ``rates[0]``. 0 where the supply has no port.
+    """
     own, oil = continuous[0].plant, actuator.plant.chambers
     of_volumes = (is_of_volumes(0.0, own.chambers, own.mechanics.position, 0.0, oil)
                   or own.cushion.end != 0.0)
     if of_volumes:
         begin_volumes(own, actuator.plant)
-    write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
+    write_rates(tau, continuous[0], drive, port, feed, actuator, of_volumes, rates[0], True)
+    slope = 0.0
+    if feed.elastance > 0.0:
+        for j in range(TOTALS_AT):
+            y[1, j] = y[0, j]
+        at = continuous[0].supply.pressure
+        continuous[1].supply.pressure = at + VARIED
+        write_rates(tau, continuous[1], drive, port, feed, actuator, of_volumes, rates[1], False)
+        continuous[1].supply.pressure = at - VARIED
+        write_rates(tau, continuous[1], drive, port, feed, actuator, of_volumes, rates[2], False)
+        slope = conductance(rates[1].totals.supply_volume, rates[2].totals.supply_volume)
     if of_volumes:
         end_volumes(own, actuator.plant)
     add_powers(weight, y, k)
+    return slope
 
 
 @kernel
-def rk4_steps(n, h, drive, port, actuator, continuous, rates, y, k):
+def rk4_steps(n, h, drive, port, feed, actuator, continuous, rates, y, k):
     """Take ``n`` steps of `rk4_step` under a constant drive and port."""
     for i in range(n):
-        rk4_step(h, i * h, drive, port, actuator, continuous, rates, y, k, h * simpson(i, n))
-    end_steps(n * h, h * simpson(n, n), drive, port, actuator, continuous, rates, y, k)
+        rk4_step(h, i * h, drive, port, feed, actuator, continuous, rates, y, k, h * simpson(i, n))
+    end_steps(n * h, h * simpson(n, n), drive, port, feed, actuator, continuous, rates, y, k)
 
 
 @kernel

@@ -7,6 +7,7 @@ Composes plant, REU and load copy (`integration`) into one kernel.
 import math
 
 from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
+from isa_ros.actuator.feed import write_feed
 from isa_ros.actuator.frames import leaves
 from isa_ros.actuator.inbox import latch, lose_pending, merge, settle
 from isa_ros.actuator.integration import (
@@ -61,15 +62,14 @@ def write_sample(plant, reu, sample):
 
 
 @part_of_kernel
-def loops_and_plant(
-        step, tau, port, actuator, continuous, rates, y, k, weight, reu_state, channels, thermal):
-    """Run the loops that are due at plant step ``step``, then the plant over that step."""
-    state, reu = continuous[0], actuator.reu
+def run_loops(step, state, actuator, reu_state, channels, thermal):
+    """Run the loops that are due at plant step ``step`` on a `CONTINUOUS`."""
+    reu = actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         if reu.is_frozen == 0.0:
             reu_state.supply_pressure = sense(
                 step, reu.current_steps, state.plant, state.load.position, state.load.velocity,
-                port.supply_pressure, actuator.plant, actuator.noise_key, channels,
+                state.supply.pressure, actuator.plant, actuator.noise_key, channels,
                 reu_state.measured)
             if reu.protection.is_on:
                 protect(step, reu_state.supply_pressure, thermal.sensed, reu.protection,
@@ -87,7 +87,16 @@ def loops_and_plant(
         device = reu_state.status
         drive_block(device.is_energised, (step - device.switched) * PLANT_STEP,
                     state.plant.block.lift, actuator.plant.block)
-    rk4_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
+
+
+@part_of_kernel
+def loops_and_plant(
+        step, tau, port, feed, actuator, continuous, rates, y, k, weight, reu_state, channels,
+        thermal):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+    state = continuous[0]
+    run_loops(step, state, actuator, reu_state, channels, thermal)
+    rk4_step(PLANT_STEP, tau, reu_state.amplifier, port, feed, actuator,
              continuous, rates, y, k, weight)
     if actuator.plant.thermal.is_on:
         thermal.coil += PLANT_STEP * coil_heat(state.plant.coil, actuator.plant.coil)
@@ -110,7 +119,7 @@ def take_port(incoming, is_shared, port, state):
     A shared load's state overwrites the load copy; of an actuator with its own load only the
     pressures are copied.
     """
-    port.supply_pressure = incoming.supply_pressure
+    port.supply_pressure = state.supply.pressure = incoming.supply_pressure
     port.return_pressure = incoming.return_pressure
     if is_shared:
         port.x0, port.v0, port.a0 = incoming.x0, incoming.v0, incoming.a0
@@ -122,13 +131,14 @@ def take_port(incoming, is_shared, port, state):
 
 
 @part_of_kernel
-def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_state, channels,
-             reply, sample, thermal, plays, link, memory):
+def tick_row(first_step, steps, port, feed, actuator, continuous, rates, y, k, reu_state, channels,
+             reply, fed, sample, thermal, plays, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
 
-    Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
-    `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
+    Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse), its
+    `SAMPLE` at the end of the tick and, of a supply with a port, ``fed``, its `SUPPLY_REPLY`.
+    ``link`` is its row where it has a link, else -1.
     """
     state = continuous[0]
     if actuator.plant.thermal.is_on:
@@ -146,15 +156,19 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
                 if is_sampled:
                     write_sample(state.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, feed, actuator,
                             continuous, rates, y, k, PLANT_STEP * simpson(i, steps), reu_state,
                             channels, thermal)
         reply.mean_forces[window] = state.totals.impulse / (window_steps * PLANT_STEP)
-    end_steps(steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port,
-              actuator, continuous, rates, y, k)
+    slope = end_steps(
+        steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port, feed,
+        actuator, continuous, rates, y, k)
     if actuator.plant.hysteresis.is_on > 0.0:
         copy_plays(actuator.plant.hysteresis.plays, plays)
-    add_tare(steps * PLANT_STEP, port, actuator.plant.valve, state.totals)
+    if feed.elastance > 0.0:
+        write_feed(rates[0].totals.supply_volume, slope, state.totals.energies.drawn, fed)
+    else:
+        add_tare(steps * PLANT_STEP, port, actuator.plant.valve, state.totals)
     reply.force = exact_force(
         state.plant, state.load.position, state.load.velocity, actuator.plant)
     reply.position = state.plant.mechanics.position
@@ -167,9 +181,9 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
     sample.largest_cavity = max(sample.largest_cavity, sample.cavity_a, sample.cavity_b)
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     if actuator.reu.is_frozen == 0.0:   # else its last reading stays
-        sample.supply_pressure = (port.supply_pressure if actuator.plant.sensors.errors.are_ideal
+        sample.supply_pressure = (state.supply.pressure if actuator.plant.sensors.errors.are_ideal
                                   else reu_state.supply_pressure)
-    add_energies(reply, port, state.totals.energies,
+    add_energies(reply, port, feed, state.totals.energies,
                  stored_elastically(state, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
     if actuator.plant.thermal.is_on:
@@ -209,9 +223,9 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         else:
             hand_over(first_step, n, memory)
         take_port(incoming[n], memory.is_shared[n], port, continuous[0])
-        tick_row(first_step, steps, port, memory.constants[n], continuous, rates, y, k, reu,
-                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
-                 memory.plays[n], link, memory)
+        tick_row(first_step, steps, port, memory.feeds[n], memory.constants[n], continuous,
+                 rates, y, k, reu, memory.channels[n], memory.replies[n], memory.fed[n],
+                 memory.samples[n], memory.thermals[n], memory.plays[n], link, memory)
         settle(reu.status, memory.applied[n])
         if link < 0:
             memory.observed[n] = memory.samples[n]

@@ -24,6 +24,7 @@ def rest_plant(
     own, state = row_record(memory.constants), row_record(memory.continuous)
     port, thermal = row_record(memory.ports), row_record(memory.thermals)
     port.supply_pressure, port.return_pressure = supply, back
+    state.supply.pressure = supply
     state.plant.mechanics.position = position
     state.load.position = position - force / own.plant.mechanics.k_s
     rest_oil(own.plant, supply, back, force, state.plant)

@@ -6,7 +6,8 @@ from isa_ros.actuator.frames import SLOTS
 from isa_ros.actuator.integration import flat, scratch
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import LINK_STATE
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.core.signals import (
+    COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, SUPPLY_PORT, SUPPLY_REPLY)
 from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.hysteresis import PLAYS
 from isa_ros.plant.thermal import THERMAL_STATE
@@ -64,6 +65,10 @@ class Memory(NamedTuple):
     """`SAMPLE` in frames on their way to the listeners."""
     observed: np.ndarray
     """`SAMPLE` that the listeners have at the end of the last tick, (n,)."""
+    feeds: np.ndarray
+    """`SUPPLY_PORT` of the tick, (n,)."""
+    fed: np.ndarray
+    """`SUPPLY_REPLY` of the last tick, (n,)."""
 
 
 def memory_of(n: int) -> Memory:
@@ -78,7 +83,8 @@ def memory_of(n: int) -> Memory:
         thermals=np.zeros(n, THERMAL_STATE), plays=np.zeros(n, PLAYS),
         links=np.zeros(n, LINK_STATE), sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
         commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),
-        observed=np.zeros(n, SAMPLE))
+        observed=np.zeros(n, SAMPLE), feeds=np.zeros(n, SUPPLY_PORT),
+        fed=np.zeros(n, SUPPLY_REPLY))
 
 
 def row_record(rows: np.ndarray) -> np.record:

@@ -6,7 +6,7 @@ from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.accuracy import cylinder
 from isa_ros.bench.row import Row, seconds
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP
 import numpy as np
 
@@ -29,12 +29,12 @@ def plant_rows() -> list[Row]:
     for model in ('smart_manifold', 'isa_v5'):
         config = default_actuator(model, model)
         bodies, rates = kernels.scratch()
-        port = np.zeros(1, LOAD_PORT)
+        port, feed = np.zeros(1, LOAD_PORT), np.zeros(1, SUPPLY_PORT)
         constants = actuator_record(config.sheet, 0)
         flats = kernels.flat(bodies), kernels.flat(rates)
         step = seconds(
             lambda: kernels.rk4_steps(
-                PLANT_STEPS, PLANT_STEP, 0.0, port[0], constants[0], bodies, rates, *flats),
+                PLANT_STEPS, PLANT_STEP, 0.0, port[0], feed[0], constants[0], bodies, rates, *flats),
             PLANT_STEPS)
         rows += [
             Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us', 'real time',

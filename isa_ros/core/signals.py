@@ -150,19 +150,17 @@ LOAD_REPLY = np.dtype([
 
 SUPPLY_PORT = np.dtype([
     ('elastance', '<f8'),        # 1/C of the supply, Pa/m3; 0: its pressure is held over the tick
-    ('inflow', '<f8'),           # less what the other actuators draw, at the tick's start, m3/s
-    ('trend', '<f8'),            # slope of the inflow over time, m3/s2
+    ('inflow', '<f8'),           # of all else less what all actuators drew last, m3/s
+    ('trend', '<f8'),            # its slope over time, m3/s2
     ('slope', '<f8'),            # by how much it falls with the pressure, m3/s/Pa
-    ('conductance', '<f8'),      # dq/dP of the other actuators' valves, m3/s/Pa
-    ('fading', '<f8'),           # rate at which the chambers behind these follow, 1/s
+    ('share', '<f8'),            # N: dq/dP of all actuators over that of this one
+    ('flow', '<f8'),             # what this one drew last, m3/s
 ])
 """Supply's port, supply to actuator, one row per actuator and tick (equation C15)."""
 
 SUPPLY_REPLY = np.dtype([
     ('flow', '<f8'),             # drawn at the end of the tick, m3/s
-    ('pressure', '<f8'),         # of the supply there, as the actuator has integrated it, Pa
-    ('conductance', '<f8'),      # dq/dP of its valve, m3/s/Pa
-    ('filling', '<f8'),          # by how much this flow falls, its chambers following, m3/s2/Pa
-    ('paid', '<f8'),             # energy of the oil drawn, J
+    ('conductance', '<f8'),      # dq/dP of its valve there, m3/s/Pa
+    ('paid', '<f8'),             # energy of the oil drawn in the tick, J
 ])
 """Supply's port, actuator to supply, one row per actuator and tick; zeros without a port."""

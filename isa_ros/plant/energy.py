@@ -20,6 +20,7 @@ ENERGIES = np.dtype([
     ('damping', 'f8'),          # damping of the sensor, and end stops, J  (E4)
     ('work', 'f8'),             # done on the load, J  (E5)
     ('compression', 'f8'),      # taken up by the oil in the chambers, J  (E6)
+    ('drawn', 'f8'),            # of the oil drawn, where the pressure of the supply moves, J  (E1)
 ])
 """Powers of one instant, W, or their integrals over time, J."""
 

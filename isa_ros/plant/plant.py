@@ -157,7 +157,8 @@ def _cushions(sheet: LinearPlant | RotaryPlant) -> dict[str, np.record]:
 
 
 @kernel
-def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, counts, powers):
+def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, counts, powers,
+                per_s=0.0):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
@@ -166,6 +167,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
     f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W, if it
     ``counts``  (E2 to E6). A step ``of_volumes`` has the `lack` of the chambers as their state.
+    ``per_s`` is the elastance of a supply whose pressure moves, in Pa/m3: it is in series with a
+    chamber's where a land smooths its flow (V18).
     """
     s, v = y.mechanics.position, y.mechanics.velocity
 
@@ -187,11 +190,12 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         per_a, per_b = chambers.elastances(s, plant.chambers)
     if plant.hoses.is_on > 0.0:
         q_a, q_b, q_p, q_t, stored, spilt = hosed_lines(
-            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers)
+            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers,
+            per_s)
     else:
         stored = spilt = 0.0
         q_a, q_b, q_p, q_t = rigid_lines(
-            y, p_a, p_b, per_a, per_b, p_s, p_t, plant, rates, counts, powers)
+            y, p_a, p_b, per_a + per_s, per_b + per_s, p_s, p_t, plant, rates, counts, powers)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     in_a, in_b, push, lost, kept, wider_a, wider_b = cushion.pass_spears(
         y.cushion, s, v, (p_a, per_a, more_a, in_a), (p_b, per_b, more_b, in_b), plant,

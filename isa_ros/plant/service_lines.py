@@ -92,18 +92,19 @@ def even_flow(net, gained, at_hose, at_chamber):
 
 @kernel
 def hosed_lines(y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts,
-                powers):
+                powers, per_s):
     """
     Return `rigid_lines` through hoses, and the powers that they store and lose outside, W.
 
     ``more_a`` and ``more_b`` are `denser` of the chambers. The oil that leaves a hose is what its
-    chamber gets, by its mass: e Q of both ends are equal  (C40).
+    chamber gets, by its mass: e Q of both ends are equal  (C40). ``per_s`` is that of the supply.
     """
     own, state = plant.hoses, y.lines
     line_a, soft_a, dense_a = hose.hose_contents(state.lack_a, p_a, own)
     line_b, soft_b, dense_b = hose.hose_contents(state.lack_b, p_b, own)
     net_a, net_b, q_p, q_t = rigid_lines(
-        y, line_a, line_b, soft_a, soft_b, p_s, p_t, plant, rates, counts, powers)
+        y, line_a, line_b, soft_a + per_s, soft_b + per_s, p_s, p_t, plant, rates, counts,
+        powers)
     out_a = hose.outward(line_a, soft_a, own.c_out_a, own.k_burst_a)
     out_b = hose.outward(line_b, soft_b, own.c_out_b, own.k_burst_b)
     net_a, net_b = net_a - out_a, net_b - out_b

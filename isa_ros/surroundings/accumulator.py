@@ -16,6 +16,7 @@ from isa_ros.core.units import LITRE, LPM, MPA
 from isa_ros.surroundings.dump import (
     DUMP, dump_fields, dumped, NoneDump, opened_after, ValveDump)
 from isa_ros.surroundings.return_line import HeldReturn, ReturnLine, SUPPLY_STEP
+from isa_ros.surroundings.supply_port import FedNode, HeldPort, MovingPort
 import numpy as np
 
 
@@ -47,6 +48,7 @@ class AccumulatorSupply(Parameters):
         'flow from the pressure line to the outside per pressure', 'l/min/MPa', ge=0.0, le=10.0)
     return_line: ReturnLine = nested(HeldReturn())
     dump: NoneDump | ValveDump = nested(NoneDump())
+    port: HeldPort | MovingPort = nested(HeldPort())
 
 
 SUPPLY = np.dtype([
@@ -125,6 +127,23 @@ def supply_rates(pressure, pump_flow, drawn, opening, supply):
         demand *= 1.0 - supply.dump_valve.is_open
     return ((pump_flow - drawn - relief - leak) / c,
             (demand - pump_flow) / supply.lag, pressure * pump_flow, pressure * (relief + leak))
+
+
+def accumulator_node(record: np.recarray, state: np.recarray) -> FedNode:
+    """
+    Return the line of a `SUPPLY` and its state as the node of its actuators  (C15).
+
+    The pump's flow follows its lag by itself; relief, leak and dump valve follow the pressure.
+    """
+    p, dump = state.pressure, record.dump_valve
+    supply, dumping = record, 0.0
+    rise, pump_rate, _, _ = supply_rates(p, state.pump_flow, 0.0, state.dump_opening, supply)
+    c = capacitance(p, supply)
+    if dump.is_there > 0.0 and state.dump_opening > 0.0 and p > 0.0:
+        dumping = 0.5 * dumped(p, state.dump_opening, 1.0 / c, dump) / p
+    slope = (dumping + (supply.k_relief if p > supply.p_relief else 0.0)
+             + (supply.k_leak if p > 0.0 else 0.0))
+    return FedNode(p, c, c * rise, slope, pump_rate)
 
 
 @kernel

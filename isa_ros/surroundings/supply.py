@@ -4,7 +4,9 @@ A hydraulic supply: the pump side, and the supply as a whole.
 Actuators use both pressures of the tick's start over the whole tick and report the volumes that
 they drew and returned; the supply then advances over the same interval. They pay for the oil what
 it costs at these held pressures, and that is what the supply gives; by what a line gave more or
-less, its pressure having moved meanwhile, is an entry of its own (E9). Pressures are gauge, flows
+less, its pressure having moved meanwhile, is an entry of its own (E9). With a moving port they
+integrate the pressure over the tick, and pay at it (`isa_ros.surroundings.supply_port`): the
+entry is then the difference of the two integrations. Pressures are gauge, flows
 leave the supply and enter the return line when positive. The pump with its accumulator is
 `isa_ros.surroundings.accumulator`, the return line `isa_ros.surroundings.return_line`, the dump
 valve `isa_ros.surroundings.dump`. Equation E9.
@@ -17,17 +19,20 @@ from dataclasses import dataclass
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, parameter, Parameters
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.accumulator import (
-    AccumulatorSupply, capacitance, supply_advance, supply_record)
+    accumulator_node, AccumulatorSupply, capacitance, supply_advance, supply_record)
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.dump import DUMP, dump_fields, LagDump, NoneDump, opened_after
 from isa_ros.surroundings.return_line import (
     HeldReturn, return_advance, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
+from isa_ros.surroundings.supply_port import FedNode, MovingPort
 import numpy as np
 
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
+_PORT_STEPS = 4.0            # the same of a line with a moving port, in plant steps (C16)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,10 +78,14 @@ SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
 
 
 @kernel
-def add_oil(drawn, returned, seconds, states):
-    """Add the volumes of one tick (m3), and their energy at the pressures held over it  (E1)."""
+def add_oil(drawn, returned, paid, seconds, states):
+    """
+    Add the volumes of one tick (m3), and their energy  (E1).
+
+    ``paid`` is that of the oil drawn, J; the pressure of the return is held over the tick.
+    """
     state = states[0]
-    energy = state.pressure * drawn - state.return_pressure * returned
+    energy = paid - state.return_pressure * returned
     state.drawn += drawn
     state.returned += returned
     state.power = energy / seconds
@@ -114,6 +123,9 @@ class Supply:
             self.state['dump_opening'] = sheet.dump.opened
             self._hold()
         self._record, self._line = self._records(sheet)
+        self.has_port = isinstance(sheet, AccumulatorSupply) and isinstance(
+            sheet.port, MovingPort)
+        """Whether its pressure moves within a tick."""
 
     def change(self, sheet: SupplySheet) -> None:
         """
@@ -144,8 +156,12 @@ class Supply:
         supply = line = None
         if isinstance(sheet, AccumulatorSupply):
             supply = supply_record(sheet)
-            self._refuse_small(
-                'capacitance', capacitance(sheet.pressure_mpa * MPA, supply[0]), 'gas_volume_l')
+            if isinstance(sheet.port, MovingPort):
+                self._refuse_stiff(supply[0])
+            else:
+                self._refuse_small(
+                    'capacitance', capacitance(sheet.pressure_mpa * MPA, supply[0]),
+                    'gas_volume_l, or let the pressure move (port: {kind: moving})')
         if isinstance(sheet.return_line, VolumeReturn):
             line = return_record(sheet.return_line, sheet.return_pressure_mpa * MPA)
             self._refuse_small(
@@ -155,11 +171,27 @@ class Supply:
         return supply, line
 
     def _refuse_small(self, what: str, c: float, key: str) -> None:
+        """Refuse a capacitance whose pressure is not constant enough over a tick."""
         holds, bound = c / self._flow_slope, _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
                 f'{self._name}: {what} over flow slope = {holds * 1e3:.3g} ms, '
                 f'must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge {key}')
+
+    def _refuse_stiff(self, supply: np.void) -> None:
+        """Refuse a line that neither actuators nor the supply itself can integrate  (C16)."""
+        c = float(supply['c_line'])     # what is left when the accumulator is empty
+        holds, bound = c / self._flow_slope, _PORT_STEPS * PLANT_STEP
+        if holds < bound:
+            raise ParameterError(
+                f'{self._name}: capacitance of the line over flow slope = {holds * 1e3:.3g} ms, '
+                f'must be >= {bound * 1e3:.3g} ms (four plant steps); enlarge line_volume_l')
+        slope = float(supply['k_relief'] + supply['k_leak'])
+        if c < 0.5 * SUPPLY_STEP * slope:
+            raise ParameterError(
+                f'{self._name}: time constant of relief valve and line = {c / slope * 1e3:.3g} ms, '
+                f'must be >= {0.5 * SUPPLY_STEP * 1e3:g} ms; enlarge line_volume_l or reduce '
+                'relief_lpm_per_mpa')
 
     def _refuse_fast(self, line: np.void) -> None:
         """Refuse a return line whose time constant C/G is below the step of the integration."""
@@ -179,9 +211,23 @@ class Supply:
         """Return the gauge return pressure in Pa, constant over the next tick."""
         return float(self.state['return_pressure'][0])
 
-    def advance(self, drawn: float, returned: float = 0.0) -> None:
-        """Advance one tick in which the actuators drew and returned these volumes (m3)."""
-        add_oil(drawn, returned, self._step, self.state)
+    def nodes(self) -> list[FedNode]:
+        """Return the node of its actuators where their pressure moves in a tick, or none."""
+        if self._record is None or not self.has_port:
+            return []
+        return [accumulator_node(self._record.view(np.recarray)[0],
+                                 self.state.view(np.recarray)[0])]
+
+    def advance(self, drawn: float, returned: float = 0.0, paid: float | None = None) -> None:
+        """
+        Advance one tick in which the actuators drew and returned these volumes (m3).
+
+        ``paid`` is what they paid for the oil drawn, J; None: the pressure was held.
+        """
+        held = self.pressure * drawn
+        add_oil(drawn, returned, held if paid is None else paid, self._step, self.state)
+        if paid is not None:
+            self.state['held_energy'] += paid - held
         if self._record is None:
             self.state['pump_energy'] += self.state['pressure'] * drawn
             self._lower()

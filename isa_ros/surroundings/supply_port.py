@@ -4,10 +4,27 @@ The supply's port: what an actuator knows of its supply, so that the pressure mo
 A supply with little oil behind many chambers does not hold its pressure over a tick: the chambers
 behind open valves take more oil than there is. Each actuator then integrates the capacity of its
 supply, with what the others do at a pressure that moves, and the supply advances over the same
-tick with the volumes drawn. Flows into the supply's node are positive. Equation C15.
+tick with the volumes drawn. Flows into the supply's node are positive. Equations C15 and C16.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
+
+from isa_ros.core.parameter import Parameters
+from isa_ros.core.signals import Records, SUPPLY_REPLY
+from isa_ros.errors import RunError
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldPort(Parameters):
+    """Actuators hold the pressure of the tick's start."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingPort(Parameters):
+    """The pressure moves within a tick: actuators integrate the capacity of the line."""
 
 
 class FedNode(NamedTuple):
@@ -38,11 +55,66 @@ class PortedSupply(Protocol):
         """Return its nodes at the start of the next tick."""
         ...
 
-    def advance_nodes(self, drawn: list[float], paid: list[float], returned: list[float]) -> None:
-        """
-        Advance by one tick in which these volumes were drawn at its nodes, m3.
 
-        ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
-        the tick. ``returned`` are the volumes given to the return, m3.
+def fill_feeds(node: FedNode, rows: Sequence[int], last: Records, feeds: Records) -> None:
+    """
+    Fill the `SUPPLY_PORT` of the actuators at a node, by their ``rows``  (C15).
+
+    ``last`` are the `SUPPLY_REPLY` of all actuators at the end of the last tick, zeros at t = 0.
+    Each assumes that the others move as it does, by the conductances of their valves  (C16): N is
+    the sum of all over its own, and at most their number, which is also what a shut valve gets.
+    """
+    flows, conductances = last['flow'].tolist(), last['conductance'].tolist()
+    drawn = total = 0.0
+    for row in rows:
+        drawn += flows[row]
+        total += conductances[row]
+    most = float(len(rows))
+    for row in rows:
+        own, feed = conductances[row], feeds[row]
+        feed['elastance'] = 1.0 / node.capacity
+        feed['inflow'] = node.inflow - drawn
+        feed['trend'], feed['slope'] = node.trend, node.slope
+        feed['share'] = total / own if total < most * own else most
+        feed['flow'] = flows[row]
+
+
+class SupplyPorts:
+    """
+    The ports of the supplies of a run that have one, each with the rows that its nodes feed.
+
+    ``n_actuators`` is the number of all rows.
+    """
+
+    def __init__(
+            self, n_actuators: int,
+            supplies: Sequence[tuple[PortedSupply, Sequence[Sequence[int]]]]) -> None:
+        self._supplies = supplies
+        self.are_there = bool(supplies)
+        """Whether a supply has one."""
+        self.answers: Records = np.zeros(n_actuators if supplies else 0, SUPPLY_REPLY)
+        """`SUPPLY_REPLY` of all actuators at the end of the last tick, (n_actuators,), or (0,)."""
+
+    def fill(self, feeds: Records) -> None:
+        """Fill the `SUPPLY_PORT` of the fed actuators for the next tick, (n_actuators,)."""
+        for supply, groups in self._supplies:
+            for node, rows in zip(supply.nodes(), groups):
+                fill_feeds(node, rows, self.answers, feeds)
+
+    def take(self, fed: Records | None) -> list[float]:
         """
-        ...
+        Keep the answers of a tick; return the energies that the actuators paid, J.
+
+        Raises
+        ------
+        RunError
+            There are ports, but no answers.
+
+        """
+        if not self.are_there:
+            return []
+        if fed is None:
+            raise RunError('a supply whose pressure moves needs what its actuators paid')
+        self.answers[:] = fed
+        paid: list[float] = fed['paid'].tolist()
+        return paid

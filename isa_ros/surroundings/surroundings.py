@@ -13,12 +13,14 @@ from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
 from isa_ros.core.parameter import check, fault, Parameters
 from isa_ros.core.saved_state import broken_number, restored_rows
+from isa_ros.core.signals import SUPPLY_REPLY
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit, Fed
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
+from isa_ros.surroundings.supply_port import SupplyPorts
 import numpy as np
 
 
@@ -56,6 +58,11 @@ class SupplyCircuit(NamedTuple):
     fed: Sequence[Fed] = ()
     """Of a circuit its manifolds that feed them."""
 
+    @property
+    def groups(self) -> Sequence[Sequence[int]]:
+        """Return the rows that each of its nodes feeds."""
+        return [own.rows for own in self.fed] or [self.rows]
+
 
 class Surroundings:
     """
@@ -84,6 +91,9 @@ class Surroundings:
             for own, first, last in zip(circuits, ends, ends[1:])]
         self._owners = [own.name for own in circuits for _ in range(_n_samples(own.sheet))]
         self._circuits = [own for own in self._supplies if isinstance(own, Circuit)]
+        self._ports = SupplyPorts(len(starts), [
+            (supply, circuit.groups)
+            for supply, circuit in zip(self._supplies, circuits) if supply.has_port])
         self.changing: Mapping[str, Changeable] = {
             name: own for circuit in circuits
             for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
@@ -130,6 +140,15 @@ class Surroundings:
         self._fill_pressures(ports)
         for body in self.bodies.values():
             body.ports(ports)
+
+    def fill_feeds(self, feeds: Records) -> None:
+        """Fill the `SUPPLY_PORT` of the actuators whose supply has a port, (n_actuators,)."""
+        self._ports.fill(feeds)
+
+    @property
+    def has_supply_ports(self) -> bool:
+        """Return whether the pressure of a supply moves within a tick."""
+        return self._ports.are_there
 
     def _fill_pressures(self, rows: Records) -> None:
         for supply, fed in zip(self._supplies, self._fed):
@@ -194,9 +213,11 @@ class Surroundings:
         for name, body in self._changing_bodies():
             body.change(_changed(body.changing, name, values))
 
-    def advance(self, replies: Records) -> None:
+    def advance(self, replies: Records, fed: Records | None = None) -> None:
         """
         Advance bodies and supplies by one tick with the `LOAD_REPLY` of every actuator.
+
+        ``fed`` are their `SUPPLY_REPLY`, where a supply has a port.
 
         Raises
         ------
@@ -207,12 +228,15 @@ class Surroundings:
         for body in self.bodies.values():
             body.advance(replies)
         drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
+        energies = self._ports.take(fed)
         for supply, circuit in zip(self._supplies, self.circuits):
+            groups = circuit.groups
+            oil = [_sum(drawn, rows) for rows in groups], [_sum(returned, rows) for rows in groups]
+            paid = [_sum(energies, rows) for rows in groups] if supply.has_port else None
             if isinstance(supply, Circuit):
-                supply.advance_held([_sum(drawn, own.rows) for own in circuit.fed],
-                                    [_sum(returned, own.rows) for own in circuit.fed])
+                supply.advance_nodes(oil[0], paid or [0.0], oil[1])
             else:
-                supply.advance(_sum(drawn, circuit.rows), _sum(returned, circuit.rows))
+                supply.advance(oil[0][0], oil[1][0], paid[0] if paid else None)
 
     def snapshot(self) -> bytes:
         """
@@ -230,7 +254,8 @@ class Surroundings:
             broken = broken_number(self.supplies[k:k + 1])
             if broken is not None:
                 raise RunError(f'{name}: {broken[0]} = {broken[1]}, must be finite to be saved')
-        return b''.join([self.supplies.tobytes(), self._values.snapshot(),
+        return b''.join([self.supplies.tobytes(), self._ports.answers.tobytes(),
+                         self._values.snapshot(),
                          *(circuit.snapshot() for circuit in self._circuits),
                          *(body.snapshot() for body in self.bodies.values())])
 
@@ -244,7 +269,8 @@ class Surroundings:
             The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        supplies_end = self.supplies.nbytes
+        answers_at = self.supplies.nbytes
+        supplies_end = answers_at + self._ports.answers.nbytes
         values_end = supplies_end + self._values.nbytes
         circuits_end = values_end + sum(own.state.nbytes for own in self._circuits)
         sizes, end = [], circuits_end
@@ -258,6 +284,8 @@ class Surroundings:
         supplies = np.concatenate([
             restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, name)
             for k, name in enumerate(self._owners)])
+        answers = restored_rows(
+            snapshot, SUPPLY_REPLY, len(self._ports.answers), answers_at, 'supply ports')
         of_circuits, at = [], values_end
         for own in self._circuits:
             of_circuits.append(snapshot[at:at + own.state.nbytes])
@@ -266,7 +294,7 @@ class Surroundings:
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()
-        self.supplies[:] = supplies
+        self.supplies[:], self._ports.answers[:] = supplies, answers
         for own, state in zip(self._circuits, of_circuits):
             own.restore(state)
         at = circuits_end

@@ -43,6 +43,12 @@ class Rows:
         written = memory_of(n_actuators) if group is None else group
         self.ports: Records = np.zeros(n_actuators, LOAD_PORT)
         """Boundary values of the tick, from the surroundings to the actuators."""
+        self.feeds: Records = written.feeds
+        """Ports of the supplies, from the surroundings to the actuators; zeros without."""
+        self.has_supply_ports = surroundings.has_supply_ports
+        """Whether a supply has one."""
+        self.fed: Records = written.fed
+        """What actuators answered to them, at the end of the tick."""
         self.commands: Records = np.zeros(n_actuators, COMMAND)
         """Commands that take effect at the tick's start."""
         self.replies: Records = written.replies

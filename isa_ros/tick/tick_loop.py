@@ -99,6 +99,8 @@ class TickLoop:
         self._lap(BEFORE_TICKS)
         self._command(given)
         self._surroundings.ports(rows.ports)
+        if rows.has_supply_ports:
+            self._surroundings.fill_feeds(rows.feeds)
         self._lap('commands and ports')
         for sink in self.sinks:
             sink.take_time(tick + 1)
@@ -113,7 +115,7 @@ class TickLoop:
             if self.stops is not None:
                 self.stops.take_tuned(rows.tuned)
         self._lap('actuators')
-        self._surroundings.advance(rows.replies)
+        self._surroundings.advance(rows.replies, rows.fed)
         rows.tuned_supplies = self._surroundings.tuned
         self._lap('body and supplies')
         self.ticks = tick + 1

@@ -14,7 +14,7 @@ from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.response.step import step, StepResponse
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.core.parameter import replaced
-from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.coil import coil_current
@@ -80,7 +80,8 @@ def _static_gain() -> tuple[float, np.ndarray]:
     """Return the static gain of the coil (A/V), and its current after every plant step (A)."""
     constants = actuator_record(model_sheet(MANIFOLD, EXPLICIT), 0)
     bodies, rates = scratch()
-    arguments = np.zeros(1, LOAD_PORT)[0], constants[0], bodies, rates, flat(bodies), flat(rates)
+    arguments = (np.zeros(1, LOAD_PORT)[0], np.zeros(1, SUPPLY_PORT)[0], constants[0], bodies,
+                 rates, flat(bodies), flat(rates))
     coil = constants.view(np.recarray)[0].plant.coil
     state = bodies.view(np.recarray)[0].plant.coil
     current = np.empty(round(OPEN_LOOP_S / PLANT_STEP))

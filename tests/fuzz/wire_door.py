@@ -42,6 +42,7 @@ class Outside:
 
     def __init__(self) -> None:
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
+        self.has_supply_ports = False
         self.bodies = {'body': SimpleNamespace(sample=np.zeros(1, LEG_SAMPLE))}
 
 

@@ -5,7 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.energy import no_powers
@@ -26,7 +26,8 @@ class Body:
         self.bodies, self.rates = kernels.scratch()
         self.row = self.bodies.view(np.recarray)[0]
         self.port = np.zeros(1, LOAD_PORT)
-        self.port['supply_pressure'] = SUPPLY
+        self.feed = np.zeros(1, SUPPLY_PORT)
+        self.port['supply_pressure'] = self.row.supply.pressure = SUPPLY
         self.current = current
         self.row.plant.mechanics.position = self.row.load.position = position
         plant = self.constants.view(np.recarray)[0].plant
@@ -36,7 +37,7 @@ class Body:
     def run(self, duration: float, h: float = PLANT_STEP) -> None:
         """Advance by ``duration`` (s)."""
         y, k = kernels.flat(self.bodies), kernels.flat(self.rates)
-        kernels.rk4_steps(round(duration / h), h, self.current, self.port[0],
+        kernels.rk4_steps(round(duration / h), h, self.current, self.port[0], self.feed[0],
                           self.constants[0], self.bodies, self.rates, y, k)
 
     @property

@@ -83,6 +83,7 @@ class FakeSurroundings:
     def __init__(self, log: list[str]) -> None:
         self.log = log
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
+        self.has_supply_ports = False
         self.tuned: dict[str, float] = {}
 
     def tune(self, values: Mapping[str, float]) -> None:
@@ -92,7 +93,7 @@ class FakeSurroundings:
     def ports(self, ports: Records) -> None:
         ports['x0'] = self.supplies['pressure']
 
-    def advance(self, replies: Records) -> None:
+    def advance(self, replies: Records, fed: Records | None = None) -> None:
         self.log.append(f'advance {replies["force"][0]:g}')
         self.supplies['pressure'] += 1.0
 

@@ -47,6 +47,7 @@ class Outside:
 
     def __init__(self, n_supplies: int, bodies: Mapping[str, np.dtype]) -> None:
         self.supplies = rows(SUPPLY_SAMPLE, n_supplies)
+        self.has_supply_ports = False
         self.bodies = {name: Shows(record) for name, record in bodies.items()}
         for k, body in enumerate(self.bodies.values()):
             body.sample.view(np.uint8)[:] += np.uint8(97 * k)   # no two alike

@@ -19,6 +19,7 @@ from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.text.sections import Place
 from isa_ros.core.kernel import kernel
+from isa_ros.core.signals import SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record
 from isa_ros.plant.chambers import begin_volumes, elastances, end_volumes, volumes
@@ -71,9 +72,10 @@ class Difference:
 
 
 @kernel
-def rates_of_first(tau, drive, ports, actuators, bodies, rates):
+def rates_of_first(tau, drive, ports, feeds, actuators, bodies, rates):
     """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
-    kernels.write_rates(tau, bodies[0], drive, ports[0], actuators[0], True, rates[0], True)
+    kernels.write_rates(tau, bodies[0], drive, ports[0], feeds[0], actuators[0], True,
+                        rates[0], True)
 
 
 class OpenLoopRig:
@@ -88,11 +90,12 @@ class OpenLoopRig:
         self._constants = actuator_record(sheet, 0)
         self._constants['load'] = own_record(fixture)
         self._port = local_port(fixture, middle)
-        self._port['supply_pressure'] = SUPPLY
+        self._port['supply_pressure'], self._feed = SUPPLY, np.zeros(1, SUPPLY_PORT)
         self._plant = self._constants.view(np.recarray)[0].plant
         self._bodies, self._rates = kernels.scratch()
         self._y, self._k = kernels.flat(self._bodies), kernels.flat(self._rates)
         body = self._bodies.view(np.recarray)[0]
+        body.supply.pressure = SUPPLY
         body.plant.mechanics.position = body.load.position = middle
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             self._plant, SUPPLY, 0.0, 0.0)
@@ -103,8 +106,8 @@ class OpenLoopRig:
         self._y[0] = self._start
         rows = []
         for current in piece.currents:
-            kernels.rk4_steps(round(ROW / h), h, current, self._port[0], self._constants[0],
-                              self._bodies, self._rates, self._y, self._k)
+            kernels.rk4_steps(round(ROW / h), h, current, self._port[0], self._feed[0],
+                              self._constants[0], self._bodies, self._rates, self._y, self._k)
             rows.append(self._y[0].copy())
         return np.array(rows)
 
@@ -128,7 +131,8 @@ class OpenLoopRig:
 
     def _slopes(self, tau: float, state: np.ndarray, current: float) -> np.ndarray:
         self._y[0] = state
-        rates_of_first(tau, current, self._port, self._constants, self._bodies, self._rates)
+        rates_of_first(tau, current, self._port, self._feed, self._constants, self._bodies,
+                       self._rates)
         rates: np.ndarray = self._k[0].copy()
         return rates
 

@@ -126,7 +126,8 @@ def _participants(
     expected += [Expected(name, '') for name in run.controllers]
     bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
     roster = Roster([own.name for own in expected],
-                    [own.name for own in run.sampled_supplies], bodies)
+                    [own.name for own in run.sampled_supplies], bodies,
+                    surroundings.has_supply_ports)
     return Participants(
         expected, roster, surroundings.starts(), run.step_ns,
         first_remote=len(run.actuators) if are_here else 0)

@@ -86,6 +86,7 @@ class ActuatorRole:
     def __init__(self, node: ActuatorNode) -> None:
         self._actuator = node.actuator
         self._index = self._n_actuators = 0
+        self._has_feed = False
         self._changes: Mapping[str, float] = {}
         self.digest = node.digest.encode()
         self.publish = node.publish
@@ -95,12 +96,15 @@ class ActuatorRole:
     def start(self, step: Step, index: int) -> Parts:
         """Start at rest, at t = 0, from its `START` row."""
         self._index, self._n_actuators = index, step.rows
+        self._has_feed = step.roster().has_supply_ports
         self._actuator.start(*step.start(index).item())
         return self._parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick of another number of actuators, or with invalid numbers."""
         step.refuse_tick(self._n_actuators, self._index)
+        if self._has_feed:
+            step.refuse_feed(self._index)
 
     def advance(self, step: Step) -> Parts:
         """Advance one tick with its row of ports and commands, and the changes before it."""
@@ -110,6 +114,8 @@ class ActuatorRole:
         command = step.command(self._index)
         if command['kinds']:
             self._actuator.accept(command)
+        if self._has_feed:
+            self._actuator.memory.feeds[0] = step.feed(self._index)
         self._actuator.tick(step.port(self._index))
         return self._parts()
 
@@ -126,7 +132,8 @@ class ActuatorRole:
     def _parts(self) -> Parts:
         own = self._actuator.memory
         return actuator_parts(own.replies, own.observed, own.applied,
-                              self._actuator.applied_parameters, own.sent)
+                              self._actuator.applied_parameters, own.sent,
+                              own.fed if self._has_feed else None)
 
 
 class ControllerRole:

@@ -16,7 +16,7 @@ from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT,
-    LOAD_REPLY, Records, SAMPLE, WAS_REFUSED)
+    LOAD_REPLY, Records, SAMPLE, SUPPLY_REPLY, WAS_REFUSED)
 from isa_ros.run.wire.header import WireError
 from isa_ros.tick.exchange import Rows
 import numpy as np
@@ -40,16 +40,19 @@ _NUMBERS = ('position', 'velocity', 'effort')
 
 def actuator_parts(
         reply: Records, sample: Records, applied: Records,
-        tuned: Mapping[str, float], sent: Records | None = None) -> list[bytes | None]:
+        tuned: Mapping[str, float], sent: Records | None = None,
+        fed: Records | None = None) -> list[bytes | None]:
     """
     Return the parts of an actuator's answer: its rows, and the parameters that changed.
 
     ``reply``, ``sample`` and ``applied`` are its `LOAD_REPLY`, `SAMPLE` and `COMMAND`, (1,);
-    ``sent`` is the `COMMAND` handed to its link, (1,), where it has one.
+    ``sent`` is the `COMMAND` handed to its link, (1,), where it has one, and ``fed`` its
+    `SUPPLY_REPLY`, (1,), in a run whose supplies have ports.
     """
     is_sent = sent is not None and sent[0]['kinds']
-    return [reply.tobytes() + sample.tobytes() + applied.tobytes(),
-            tuned_part(tuned), sent.tobytes() if sent is not None and is_sent else None]
+    parts = [reply.tobytes() + sample.tobytes() + applied.tobytes(),
+             tuned_part(tuned), sent.tobytes() if sent is not None and is_sent else None]
+    return parts if fed is None else [*parts, fed.tobytes()]
 
 
 def refuse_actuator_parts(parts: Parts) -> None:
@@ -62,7 +65,7 @@ def refuse_actuator_parts(parts: Parts) -> None:
         They cannot be taken.
 
     """
-    rows, tuned, sent = parts if len(parts) == _PARTS else (None, None, None)
+    rows, tuned, sent = parts[:_PARTS] if _PARTS <= len(parts) <= _PARTS + 1 else (None,) * _PARTS
     if rows is None or len(rows) != _ROWS:
         raise WireError('an answer that is not of an actuator')
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
@@ -74,11 +77,15 @@ def refuse_actuator_parts(parts: Parts) -> None:
         refuse_command(np.frombuffer(sent, COMMAND)[0])
     if tuned is not None:
         tuned_of(tuned)
+    if len(parts) > _PARTS:
+        fed = parts[_PARTS] or b''
+        if len(fed) != SUPPLY_REPLY.itemsize or not is_finite(np.frombuffer(fed, np.float64)):
+            raise WireError('an answer with an invalid reply to the port of a supply')
 
 
 def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
     """Fill one row from the parts of an actuator's answer; inverse of `actuator_parts`."""
-    data, tuned, sent = parts
+    data, tuned, sent, *fed = parts
     assert data is not None, 'refuse_actuator_parts has checked them'
     sample_at = LOAD_REPLY.itemsize
     rows.reply_values[row] = np.frombuffer(data, np.float64, sample_at // _FLOAT)
@@ -90,6 +97,8 @@ def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
         rows.sent[row] = np.frombuffer(sent, COMMAND)[0]
     if tuned is not None:
         rows.tuned = {**rows.tuned, row: tuned_of(tuned)}
+    if fed:
+        rows.fed[row] = np.frombuffer(fed[0] or b'', SUPPLY_REPLY)[0]
 
 
 def tuned_part(values: Mapping[str, float]) -> bytes | None:

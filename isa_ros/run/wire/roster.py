@@ -22,13 +22,16 @@ class Roster(NamedTuple):
     supplies: Sequence[str]
     bodies: Mapping[str, np.dtype[np.void]]
     """Record type of the sample of each body, by name."""
+    has_supply_ports: bool = False
+    """Whether a tick has the `SUPPLY_PORT` of each actuator too."""
 
     def encode(self) -> bytes:
         """Return the bytes that `decode` reads."""
         bodies = [
             [body, [[name, own[name].base.str, own[name].shape] for name in own.names or ()]]
             for body, own in self.bodies.items()]
-        return json.dumps([list(self.names), list(self.supplies), bodies]).encode()
+        told = [list(self.names), list(self.supplies), bodies]
+        return json.dumps([*told, True] if self.has_supply_ports else told).encode()
 
     @classmethod
     def decode(cls, data: bytes) -> 'Roster':
@@ -42,10 +45,12 @@ class Roster(NamedTuple):
 
         """
         try:
-            names, supplies, bodies = json.loads(data)
+            names, supplies, bodies, *ported = json.loads(data)
         except (ValueError, TypeError, RecursionError) as error:
             raise WireError('a hello without participants') from error
-        return cls(_names(names), _names(supplies), _records(bodies))
+        if ported not in ([], [True]):
+            raise WireError('a hello with more than participants')
+        return cls(_names(names), _names(supplies), _records(bodies), bool(ported))
 
 
 def _names(value: Any) -> list[str]:

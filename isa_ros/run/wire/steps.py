@@ -5,7 +5,7 @@ from enum import IntEnum
 import struct
 from typing import NamedTuple
 
-from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START
+from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START, SUPPLY_PORT
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
     is_finite, joined, Parts, refuse_command, split, tuned_of, tuned_part)
@@ -20,6 +20,7 @@ STEP_TOPIC = '_isa/step'
 _STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
 _NUMBER = struct.Struct('<q')
 _LARGEST_STEP_NS = 1_000_000_000
+_TICK = LOAD_PORT.itemsize + COMMAND.itemsize   # of an actuator
 
 
 class StepKind(IntEnum):
@@ -76,9 +77,13 @@ class Step(NamedTuple):
         """Return the `COMMAND` row of one actuator."""
         return self._row(COMMAND, self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize)
 
+    def feed(self, index: int) -> np.void:
+        """Return the `SUPPLY_PORT` row of one actuator, in a run that has such ports."""
+        return self._row(SUPPLY_PORT, self.rows * _TICK + index * SUPPLY_PORT.itemsize)
+
     def state(self, roster: Roster) -> PublishedRows:
         """Return the rows that controllers receive: the state before a tick, nothing applied."""
-        at = self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
+        at = self.rows * _size_of_row(roster)
         samples = np.frombuffer(self.body, SAMPLE, self.rows, at)
         at += samples.nbytes
         supplies = np.frombuffer(self.body, SUPPLY_SAMPLE, len(roster.supplies), at)
@@ -127,9 +132,18 @@ class Step(NamedTuple):
             raise WireError('a tick with a number that is not finite')
         refuse_command(self.command(index))
 
+    def refuse_feed(self, index: int) -> None:
+        """Refuse a tick without a valid `SUPPLY_PORT` for an actuator; as `refuse_tick`."""
+        at = self.rows * _TICK + index * SUPPLY_PORT.itemsize
+        if len(self.body) < self.rows * (_TICK + SUPPLY_PORT.itemsize):
+            raise WireError('a tick without the ports of the supplies')
+        if not is_finite(np.frombuffer(
+                self.body, np.float64, SUPPLY_PORT.itemsize // 8, at)):
+            raise WireError('a tick with a number that is not finite')
+
     def refuse_state(self, n_actuators: int, roster: Roster) -> None:
         """Refuse a tick that does not show a controller the state of its run; `refuse_tick`."""
-        at = n_actuators * (LOAD_PORT.itemsize + COMMAND.itemsize)
+        at = n_actuators * _size_of_row(roster)
         size = n_actuators * SAMPLE.itemsize + len(roster.supplies) * SUPPLY_SAMPLE.itemsize + sum(
             record.itemsize for record in roster.bodies.values())
         if self.rows != n_actuators or len(self.body) != at + size:
@@ -167,10 +181,17 @@ def encode_hello(
 def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
     """Return the bytes of one tick: ports and commands, for controllers also the samples."""
     body = rows.ports.tobytes() + rows.commands.tobytes()
+    if rows.has_supply_ports:
+        body += rows.feeds.tobytes()
     if has_controllers:
         body += rows.samples.tobytes() + rows.supplies.tobytes()
         body += b''.join(sample.tobytes() for sample in rows.bodies.values())
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
+
+
+def _size_of_row(roster: Roster) -> int:
+    """Return the bytes of one actuator in a tick, before what controllers are shown."""
+    return _TICK + (SUPPLY_PORT.itemsize if roster.has_supply_ports else 0)
 
 
 def encode_begin(run_id: int, identities: Parts) -> bytes:
@@ -223,7 +244,7 @@ def decode_step(data: bytes) -> Step:
     step = Step(_STEP_KINDS[kind], run_id, tick, rows, body)
     least = 0
     if step.kind is StepKind.TICK:
-        least = rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
+        least = rows * _TICK
     elif step.kind is StepKind.HELLO:
         least = _NUMBER.size + rows * START.itemsize
     elif step.kind is StepKind.RESTORE:

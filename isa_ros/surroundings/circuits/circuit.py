@@ -1,9 +1,9 @@
 """
 A circuit over a run, with a port at each manifold that feeds actuators.
 
-Actuators use both pressures of the tick's start, or move them in their own tick by what their
-manifold is said to be (`isa_ros.surroundings.supply_port`); the circuit then advances over the
-same interval with the mean flows. At t = 0 pressure lines are at the least of what pumps, relief
+Actuators move the pressure of their manifold in their own tick by what it is said to be
+(`isa_ros.surroundings.supply_port`), and use the return pressure of the tick's start; the circuit
+then advances over the same interval with the mean flows. At t = 0 pressure lines are at the least of what pumps, relief
 and unloading valves hold, the return side is at the tank's pressure. Equation E12.
 """
 
@@ -59,6 +59,8 @@ class Circuit:
     def __init__(
             self, sheet: CircuitSupply, step_ns: int, fed: Sequence[Fed],
             samples: np.ndarray | None = None, name: str = 'supply') -> None:
+        self.has_port = True
+        """Whether its pressures move within a tick."""
         self._name, self._fed, self._step = name, tuple(fed), step_ns * 1e-9
         network = network_of(sheet)
         self._nodes = [network.node(own.place) for own in fed]
@@ -163,7 +165,12 @@ class Circuit:
     def advance_nodes(
             self, drawn: Sequence[float], paid: Sequence[float],
             returned: Sequence[float]) -> None:
-        """Advance by one tick; as `PortedSupply.advance_nodes`."""
+        """
+        Advance by one tick in which these volumes were drawn at its nodes, m3.
+
+        ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
+        the tick. ``returned`` are the volumes given to the return, m3.
+        """
         flows = self._none.copy()
         for node, back, volume, given in zip(self._nodes, self._returns, drawn, returned):
             flows[node] += volume / self._step

@@ -35,6 +35,7 @@ class Outside:
 
     def __init__(self, has_body: bool) -> None:
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
+        self.has_supply_ports = False
         self.bodies = {'cart': Cart()} if has_body else {}
 
 
