@@ -34,7 +34,8 @@ def plant_rows() -> list[Row]:
         flats = kernels.flat(bodies), kernels.flat(rates)
         step = seconds(
             lambda: kernels.rk4_steps(
-                PLANT_STEPS, PLANT_STEP, 0.0, port[0], feed[0], constants[0], bodies, rates, *flats),
+                PLANT_STEPS, PLANT_STEP, 0.0, port[0], feed[0], constants[0], bodies,
+                rates, *flats),
             PLANT_STEPS)
         rows += [
             Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us', 'real time',

@@ -28,11 +28,10 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.dump import DUMP, dump_fields, LagDump, NoneDump, opened_after
 from isa_ros.surroundings.return_line import (
     HeldReturn, return_advance, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
-from isa_ros.surroundings.supply_port import FedNode, MovingPort
+from isa_ros.surroundings.supply_port import FedNode, MovingPort, PORT_STEPS
 import numpy as np
 
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
-_PORT_STEPS = 4.0            # the same of a line with a moving port, in plant steps (C16)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,7 +180,7 @@ class Supply:
     def _refuse_stiff(self, supply: np.void) -> None:
         """Refuse a line that neither actuators nor the supply itself can integrate  (C16)."""
         c = float(supply['c_line'])     # what is left when the accumulator is empty
-        holds, bound = c / self._flow_slope, _PORT_STEPS * PLANT_STEP
+        holds, bound = c / self._flow_slope, PORT_STEPS * PLANT_STEP
         if holds < bound:
             raise ParameterError(
                 f'{self._name}: capacitance of the line over flow slope = {holds * 1e3:.3g} ms, '
@@ -189,8 +188,8 @@ class Supply:
         slope = float(supply['k_relief'] + supply['k_leak'])
         if c < 0.5 * SUPPLY_STEP * slope:
             raise ParameterError(
-                f'{self._name}: time constant of relief valve and line = {c / slope * 1e3:.3g} ms, '
-                f'must be >= {0.5 * SUPPLY_STEP * 1e3:g} ms; enlarge line_volume_l or reduce '
+                f'{self._name}: time constant of relief valve and line = {c / slope * 1e3:.3g} '
+                f'ms, must be >= {0.5 * SUPPLY_STEP * 1e3:g} ms; enlarge line_volume_l or reduce '
                 'relief_lpm_per_mpa')
 
     def _refuse_fast(self, line: np.void) -> None:

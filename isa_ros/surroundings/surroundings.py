@@ -232,11 +232,14 @@ class Surroundings:
         for supply, circuit in zip(self._supplies, self.circuits):
             groups = circuit.groups
             oil = [_sum(drawn, rows) for rows in groups], [_sum(returned, rows) for rows in groups]
-            paid = [_sum(energies, rows) for rows in groups] if supply.has_port else None
-            if isinstance(supply, Circuit):
-                supply.advance_nodes(oil[0], paid or [0.0], oil[1])
+            paid = [_sum(energies, rows) for rows in groups] if energies else []
+            if not isinstance(supply, Circuit):
+                is_paid = supply.has_port and paid
+                supply.advance(oil[0][0], oil[1][0], paid[0] if is_paid else None)
+            elif paid:
+                supply.advance_nodes(oil[0], paid, oil[1])
             else:
-                supply.advance(oil[0][0], oil[1][0], paid[0] if paid else None)
+                supply.advance_held(*oil)
 
     def snapshot(self) -> bytes:
         """

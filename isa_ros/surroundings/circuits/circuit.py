@@ -3,13 +3,15 @@ A circuit over a run, with a port at each manifold that feeds actuators.
 
 Actuators move the pressure of their manifold in their own tick by what it is said to be
 (`isa_ros.surroundings.supply_port`), and use the return pressure of the tick's start; the circuit
-then advances over the same interval with the mean flows. At t = 0 pressure lines are at the least of what pumps, relief
-and unloading valves hold, the return side is at the tank's pressure. Equation E12.
+then advances over the same interval with the mean flows. At t = 0 pressure lines are at the least
+of what pumps, relief and unloading valves hold, the return side is at the tank's pressure.
+Equation E12.
 """
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError, ParameterError, RunError
 from isa_ros.surroundings.circuits.network import (
@@ -24,11 +26,9 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.circuits.stiffness import steps_of
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from isa_ros.surroundings.supply_port import FedNode
+from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
 import numpy as np
 from numpy.typing import NDArray
-
-_SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
 
 
 class Fed(NamedTuple):
@@ -51,8 +51,7 @@ class Circuit:
     Raises
     ------
     ParameterError
-        The circuit cannot be integrated, or a manifold is too small to hold its pressure over
-        one tick.
+        The circuit cannot be integrated, or a manifold is too small for its actuators.
 
     """
 
@@ -102,16 +101,16 @@ class Circuit:
         return network, steps
 
     def _refuse_small(self, fed: Fed, node: np.record) -> None:
-        """Refuse a manifold that does not hold its pressure over a tick, at its precharge."""
+        """Refuse a manifold too small for its actuators to integrate, at its precharge  (C16)."""
         theta = float(node.gas.theta_a)
         p_gas = node.gas.amount * theta / node.gas.v_0 if node.gas.v_0 > 0.0 else 0.0
         c = float(node_capacity(1.01 * p_gas, theta, node))
-        holds, bound = c / fed.flow_slope, _SLOWEST_TICKS * self._step
+        holds, bound = c / fed.flow_slope, PORT_STEPS * PLANT_STEP
         if holds < bound:
             raise ParameterError(
                 f'{self._name}: parts.{fed.place}: capacity over flow slope of its actuators = '
-                f'{holds * 1e3:.3g} ms, must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge its '
-                'oil_volume_l')
+                f'{holds * 1e3:.3g} ms, must be >= {bound * 1e3:.3g} ms (four plant steps); '
+                'enlarge its oil_volume_l')
 
     def refuse(self, sheet: CircuitSupply) -> None:
         """Refuse a sheet with which `change` cannot continue; raises as the class."""

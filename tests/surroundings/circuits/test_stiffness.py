@@ -4,11 +4,12 @@ import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits import stiffness
+from isa_ros.surroundings.circuits.circuit import Circuit, Fed
 from isa_ros.surroundings.circuits.network import OF_LINE, OF_PUMP
 from isa_ros.surroundings.circuits.plan import Network, network_of
 import numpy as np
 import pytest
-from tests.surroundings.circuits.sheets import circuit_of, sheet_of, SIMPLE
+from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of, SIMPLE, SLOPE
 from tests.surroundings.circuits.test_circuit import STATION
 
 
@@ -58,11 +59,11 @@ def test_what_cannot_be_integrated_is_refused_by_name(text: str, said: str) -> N
 
 
 def test_a_manifold_that_does_not_hold_its_pressure_is_refused() -> None:
-    """C/slope below ten ticks."""
+    """C/slope below four plant steps (C16)."""
     with pytest.raises(ParameterError, match=(
             r'supply: parts\.main: capacity over flow slope of its actuators = [\d.]+ ms, must be '
-            r'>= 10 ms \(ten ticks\); enlarge its oil_volume_l')):
-        circuit_of(SIMPLE.replace('oil_volume_l: 0.5', 'oil_volume_l: 0.01'), 'main')
+            r'>= 0.08 ms \(four plant steps\); enlarge its oil_volume_l')):
+        Circuit(sheet_of(SIMPLE), MS, [Fed('main', 1e4 * SLOPE)])
 
 
 def test_rates_are_those_of_one_manifold() -> None:
