@@ -31,11 +31,40 @@ def ratings_of(plant: np.record) -> Ratings:
     if valve.most_drop > 0.0:
         most = min(most, valve.most_drop)
     flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(most)
+    least = oil.area_a if plant.spring.is_on else min(oil.area_a, oil.area_b)
     return Ratings(
-        stroke=float(oil.stroke), speed=float(flow / min(oil.area_a, oil.area_b)),
+        stroke=math.inf if is_endless(plant) else float(oil.stroke), speed=float(flow / least),
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),
         current_range=float(sensors.current_range),
         opening_pressure=float(plant.relief.p_open), spool_stop=float(valve.x_max))
+
+
+def is_endless(plant: np.record) -> bool:
+    """Return whether a `PLANT` record is that of a motor."""
+    return not plant.chambers.swept_a
+
+
+def own_ends(plant: np.record) -> tuple[float, float]:
+    """Return the lengths at both ends in which an end takes a force, m; -inf: no end."""
+    if is_endless(plant):
+        return -math.inf, -math.inf
+    return float(plant.cushion_a.length), float(plant.cushion_b.length)
+
+
+def forcing_areas(plant: np.record) -> tuple[float, float]:
+    """
+    Return the areas that give the largest forces out and in with a pressure, m2 | m3/rad.
+
+    Those of the piston; of a single-acting cylinder A less the area that holds the extended spring
+    at the relief valves' opening pressure, and the area that has its mean force there.
+    """
+    oil, spring = plant.chambers, plant.spring
+    if not spring.is_on:
+        return float(oil.area_a), float(oil.area_b)
+    most = spring.preload + spring.stiffness * oil.stroke
+    pressure = plant.relief.p_open
+    return (max(0.0, float(oil.area_a - most / pressure)),
+            float(0.5 * (spring.preload + most) / pressure))
 
 
 def null_speed(plant: np.record) -> float:
@@ -68,7 +97,7 @@ def evidence_of(
     The sensors read hoses: their drop is like friction, and behind a load-holding valve they say
     nothing about the force.
     """
-    steps, oil = loop_steps(reu), plant.chambers
+    steps, oil, ends = loop_steps(reu), plant.chambers, own_ends(plant)
     stiction, viscous = plant.friction.stiction, plant.friction.sigma2
     if plant.holding_a.kind or plant.holding_b.kind:
         stiction = _ANY
@@ -78,7 +107,8 @@ def evidence_of(
             plant.hoses, flow)
     return record(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
-        end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
+        end_a=ends[0], end_b=ends[1],
+        preload=plant.spring.preload, stiffness=plant.spring.stiffness,
         force_range=plant.sensors.force_range, stiction=stiction, viscous=viscous,
         inertia=plant.mechanics.inertia,
         speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
@@ -88,16 +118,18 @@ def evidence_of(
 def supervision_of(plant: np.record, reu: Reu, has_spool_sensor: bool) -> np.record:
     """Return the `SUPERVISION` record of a `PLANT` record and its REU."""
     oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
+    (area_a, area_b), ends = forcing_areas(plant), own_ends(plant)
     period = loop_steps(reu)['current'] * PLANT_STEP
     speed = ratings_of(plant).speed
     return record(
-        SUPERVISION, area_a=oil.area_a, area_b=oil.area_b, stroke=oil.stroke,
-        end_a=plant.cushion_a.length, end_b=plant.cushion_b.length,
+        SUPERVISION, area_a=area_a, area_b=area_b, stroke=oil.stroke,
+        end_a=ends[0], end_b=ends[1],
         flow_gain=flow_curve(valve.x_max, valve) * valve.per_root_drop,
         force_range=sensors.force_range, pressure_range=sensors.pressure_range,
         current_range=sensors.current_range,
         spool_range=sensors.spool_range if has_spool_sensor else 0.0,
         spool_gain=valve.k_spool / plant.coil.parallel, opening=_CERTAIN * valve.x_max,
+        has_two=int(not plant.spring.is_on),
         follows_force=int(not isinstance(reu.force, Off)), creep=_CREEP * speed,
         slow_share=period / (_SLOW + period), mean_share=period / (_MEAN + period))
 

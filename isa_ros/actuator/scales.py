@@ -15,6 +15,7 @@ from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, volumes
 from isa_ros.plant.coil import ClosedLoopCoil
+from isa_ros.plant.return_spring import CoilSpring, spring_forces, spring_of
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import ClosedLoopSpool
 from isa_ros.plant.valve_record import valve_record
@@ -42,7 +43,10 @@ def _stall_out(sheet: ActuatorSheet) -> float:
 
 
 def _stall_in(sheet: ActuatorSheet) -> float:
-    """Return A_B P_S in N | Nm."""
+    """Return A_B P_S in N | Nm, or the force of a spring at the extended end."""
+    spring = spring_of(sheet.plant)
+    if isinstance(spring, CoilSpring):
+        return spring_forces(spring, _stroke(sheet))[1]
     return sheet.plant.drive.areas[1] * _rated_pressure(sheet)
 
 
@@ -153,7 +157,10 @@ def _null_flow_gain(sheet: ActuatorSheet) -> float:
 
 def _output_per_speed(sheet: ActuatorSheet) -> float:
     """Return the valve's command for 1 m/s | rad/s, the mean of both directions and areas."""
-    return 0.5 * sum(sheet.plant.drive.areas) / _null_flow_gain(sheet)
+    area_a, area_b = sheet.plant.drive.areas
+    if isinstance(spring_of(sheet.plant), CoilSpring):
+        area_b = area_a
+    return 0.5 * (area_a + area_b) / _null_flow_gain(sheet)
 
 
 def _valve_lag(sheet: ActuatorSheet) -> float:
@@ -180,11 +187,13 @@ def _flow_per_force_rate(sheet: ActuatorSheet) -> float:
     least flow over the stroke after that.
     """
     oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
+    oil.holds_b = float(not isinstance(spring_of(sheet.plant), CoilSpring))
     valve, k_s = _valve(sheet), sheet.plant.mechanics.sensor_stiffness
     rates, in_loop = [], []
     for place in np.linspace(0.0, oil.stroke, POINTS):
         v_a, v_b = volumes(place, oil)
         per_a, per_b = oil.beta * oil.area_a / v_a, oil.beta * oil.area_b / v_b
+        per_b *= oil.holds_b
         stiffness = per_a * oil.area_a + per_b * oil.area_b
         in_loop.append(stiffness / (1.0 + stiffness / k_s))
         rates.append((per_a * valve.f_pa + per_b * valve.f_bt) / stiffness)

@@ -37,6 +37,8 @@ NUMBERS = {
     IMPEDANCE: ('position', 'velocity', 'effort')}
 """What each mode uses of position, velocity and effort; the inner modes may use the effort."""
 _FLOAT_BYTES = 8
+MOST_TURNS = 1e4
+"""Largest position of a motor either way."""
 _OF_A_MODE = HAS_MODE | HAS_REFERENCE
 
 
@@ -57,7 +59,7 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
     speed = ratings_of(plant_record(sound(sheet.plant))[0]).speed
     bounds = {
-        'position': Bounds(0.0, sheet.plant.drive.stroke, length, 'the stroke'),
+        'position': _positions(sheet, length),
         'velocity': Bounds(-speed, speed, f'{length}/s', 'the speed at full opening')}
     if isinstance(position, Impedance):
         bounds['effort'] = Bounds(
@@ -68,6 +70,13 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
             bounds[gain] = Bounds(
                 0.0, known[name].bounds['le'], known[name].unit, 'the usable gains')
     return bounds
+
+
+def _positions(sheet: ActuatorSheet, length: str) -> Bounds:
+    if sheet.is_endless:
+        most = MOST_TURNS * sheet.plant.drive.stroke
+        return Bounds(-most, most, length, f'{MOST_TURNS:g} turns')
+    return Bounds(0.0, sheet.plant.drive.stroke, length, 'the stroke')
 
 
 def reference_bounds(sheet: ActuatorSheet) -> Mapping[int, Bounds]:

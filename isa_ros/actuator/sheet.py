@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import (
-    evidence_of, null_speed, ratings_of, supervision_of, valve_lag)
+    evidence_of, forcing_areas, null_speed, ratings_of, supervision_of, valve_lag)
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
@@ -17,7 +17,9 @@ from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.cushion_sheets import refuse_cushions
 from isa_ros.plant.hose import soft_volume
-from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
+from isa_ros.plant.plant import (
+    LinearPlant, MotorPlant, Plant, plant_record, RotaryPlant)
+from isa_ros.plant.return_spring import CoilSpring, spring_of
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool, ResponseSpool
 from isa_ros.plant.stated_curves import SidesFlow
 from isa_ros.plant.valve_sheets import DataSheetValve
@@ -42,14 +44,19 @@ class ActuatorSheet(Parameters):
 
     spool_feedback: str = choice(
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
-    plant: LinearPlant | RotaryPlant
+    plant: Plant
     reu: Reu
     link: LinkSheet = nested(NO_LINK)
 
     @property
     def is_rotary(self) -> bool:
         """Return whether the generalised units are rad and Nm."""
-        return isinstance(self.plant, RotaryPlant)
+        return isinstance(self.plant, (RotaryPlant, MotorPlant))
+
+    @property
+    def is_endless(self) -> bool:
+        """Return whether it turns without an end: its stroke is one turn, in which it starts."""
+        return isinstance(self.plant, MotorPlant)
 
 
 def refuse_wiring(sheet: ActuatorSheet) -> None:
@@ -91,6 +98,14 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     if isinstance(plant, LinearPlant):
         refuse_cushions(
             plant.drive, plant.cushion_a, plant.cushion_b, plant.oil.dead_volume_ml)
+    if sheet.is_endless and isinstance(reu.force, FeedbackLinearisation):
+        raise ConfigError(
+            'reu.force.kind = feedback_linearisation and plant.kind = motor: its model has '
+            'chambers that grow; set reu.force.kind: pid')
+    if isinstance(spring_of(plant), CoilSpring) and isinstance(reu.force, FeedbackLinearisation):
+        raise ConfigError(
+            'reu.force.kind = feedback_linearisation and plant.return_spring.kind = coil: it '
+            'needs both chambers; set reu.force.kind: pid')
     if isinstance(plant.block_valve, NoneBlock):
         for key, reaction in reactions_of(reu.protection).items():
             if reaction == 'block':
@@ -99,7 +114,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
                     'plant.block_valve.kind: poppet, or the reaction disable')
 
 
-def _refuse_hysteresis_of_pilot(plant: LinearPlant | RotaryPlant) -> None:
+def _refuse_hysteresis_of_pilot(plant: Plant) -> None:
     """Refuse the hysteresis of a valve whose loop is in the REU: it is not that of the pilot."""
     widest = plant.valve.hysteresis_percent
     if widest > 0.0 and isinstance(plant.spool, PilotedSpool):
@@ -180,14 +195,20 @@ def force_stiffness(plant: np.record) -> np.ndarray:
 
 
 def known_model(plant: np.record, per_spool: float) -> np.record:
-    """Return the `LINEARISED` record: a linearising block's model of its actuator."""
+    """
+    Return the `LINEARISED` record: a linearising block's model of its actuator.
+
+    Of a single-acting cylinder, which only stops use, a spring retracts as oil on an area would.
+    """
     oil, valve = plant.chambers, plant.valve
+    area_b = forcing_areas(plant)[1] if plant.spring.is_on else oil.area_b
+    f_pb, f_bt = (valve.f_at, valve.f_pa) if plant.spring.is_on else (valve.f_pb, valve.f_bt)
     return record(
-        LINEARISED, area_a=oil.area_a, area_b=oil.area_b, stroke=oil.stroke,
+        LINEARISED, area_a=oil.area_a, area_b=area_b, stroke=oil.stroke,
         dead_volume=oil.dead_volume, beta=oil.beta, c_li=oil.c_li, k_s=plant.mechanics.k_s,
         k_low=valve.k_low, k_high=valve.k_high, q_rest=valve.q_rest, x_dg=valve.x_dg,
         x_max=valve.x_max, per_root_drop=valve.per_root_drop, f_pa=valve.f_pa,
-        f_at=valve.f_at, f_bt=valve.f_bt, f_pb=valve.f_pb, output_per_spool=per_spool,
+        f_at=valve.f_at, f_bt=f_bt, f_pb=f_pb, output_per_spool=per_spool,
         has_points=valve.has_points, flow=valve.flow)
 
 
@@ -212,6 +233,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         known_model(known[0], output_per_spool(sheet)),
         valve_lag(known[0], sheet.reu), null_speed(known[0]), known[0].sensors.encoder,
         known[0].valve.k_spool, known[0].coil.parallel, block_wiring(sheet))
+    reu['rules']['flow']['is_endless'] = float(sheet.is_endless)
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),

@@ -20,6 +20,7 @@ from isa_ros.core.units import MILLILITRE
 from isa_ros.errors import ParameterError
 from isa_ros.plant.cavitation import contents, lack, LEAST_AIR_PRESSURE, modulus
 from isa_ros.plant.drives import Cylinder, Vane
+from isa_ros.plant.motor import Motor
 import numpy as np
 
 
@@ -66,7 +67,9 @@ CHAMBERS = np.dtype([
     ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8'),
     ('p_vapour', 'f8'),     # Pa gauge
     ('air', 'f8'), ('leaks_out', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8'),
-    ('least_a', 'f8'), ('least_b', 'f8')])  # m3, below which a step is one of volumes
+    ('least_a', 'f8'), ('least_b', 'f8'),   # m3, below which a step is one of volumes
+    ('holds_b', 'f8'),      # 0: chamber B is open, and no spring of oil
+    ('swept_a', 'f8'), ('swept_b', 'f8')])  # growth of the volumes: the areas; 0: of a motor
 MOST_EXPANSION = 100.0  # 1, integral of dp/beta down to the vapour pressure: e^100 is a number
 FASTEST_SPRING = 0.2    # rad in a step: RK4 of pressures loses 1e-10 of the oil at rest in it
 MOST_SWEPT = 0.01       # 1, of a chamber's volume z in a step: RK4 of pressures loses z^5/120
@@ -76,7 +79,7 @@ CHAMBERS_STATE = np.dtype([
 
 
 def chambers_record(
-        drive: Cylinder | Vane, oil: Oil, inertia: float = math.inf) -> np.record:
+        drive: Cylinder | Vane | Motor, oil: Oil, inertia: float = math.inf) -> np.record:
     """
     Return the `CHAMBERS` record; air of no pressure would fill any volume  (C12).
 
@@ -84,6 +87,7 @@ def chambers_record(
     faster than `FASTEST_SPRING`.
     """
     area_a, area_b = drive.areas
+    swept_a, swept_b = (0.0, 0.0) if isinstance(drive, Motor) else drive.areas
     slowest = PLANT_STEP / FASTEST_SPRING
     least = oil.effective_bulk_modulus / inertia * slowest * slowest
     vapour = oil.vapour_pressure_kpa * 1e3
@@ -96,14 +100,15 @@ def chambers_record(
         p_vapour=vapour - ATMOSPHERE, air=oil.entrained_air,
         leaks_out=float(oil.external_leakage_a + oil.external_leakage_b > 0.0),
         c_le_a=oil.external_leakage_a, c_le_b=oil.external_leakage_b,
-        least_a=least * area_a * area_a, least_b=least * area_b * area_b)
+        least_a=least * area_a * area_a, least_b=least * area_b * area_b,
+        holds_b=1.0, swept_a=swept_a, swept_b=swept_b)
 
 
 @kernel
 def volumes(s, chambers):
-    """Return (V_A, V_B) = (V_p + A_A s, V_p + A_B (L - s)) in m3  (C1)."""
-    return (chambers.dead_volume + chambers.area_a * s,
-            chambers.dead_volume + chambers.area_b * (chambers.stroke - s))
+    """Return (V_A, V_B) = (V_p + A_A s, V_p + A_B (L - s)) in m3  (C1); of a motor V_p  (M6)."""
+    return (chambers.dead_volume + chambers.swept_a * s,
+            chambers.dead_volume + chambers.swept_b * (chambers.stroke - s))
 
 
 @kernel
@@ -168,8 +173,8 @@ def is_of_volumes(h, y, s, v, chambers):
     v_a, v_b = volumes(s, chambers)
     swept = h * abs(v)
     return (min(y.p_a, y.p_b) < 0.0 or max(y.cavity_a, y.cavity_b) > 0.0 or chambers.air > 0.0
-            or v_a < chambers.least_a or swept * chambers.area_a > MOST_SWEPT * v_a
-            or v_b < chambers.least_b or swept * chambers.area_b > MOST_SWEPT * v_b)
+            or v_a < chambers.least_a or swept * chambers.swept_a > MOST_SWEPT * v_a
+            or v_b < chambers.least_b or swept * chambers.swept_b > MOST_SWEPT * v_b)
 
 
 @kernel
@@ -193,10 +198,11 @@ def lack_rates(gained_a, gained_b, more_a, more_b, v, chambers):
     Return the rates of both `lack`, A s' - e Q_A and -A s' - e Q_B, in m3/s  (C11).
 
     ``gained_a`` is Q_A - A s', the oil that a chamber gains beyond what its piston sweeps; e is
-    1 + ``more_a``, the density of its oil over that at the vapour pressure.
+    1 + ``more_a``, the density of its oil over that at the vapour pressure. The volumes of a motor
+    do not change.
     """
-    return (-gained_a - more_a * (gained_a + chambers.area_a * v),
-            -gained_b - more_b * (gained_b - chambers.area_b * v))
+    return (-gained_a - more_a * (gained_a + chambers.swept_a * v),
+            -gained_b - more_b * (gained_b - chambers.swept_b * v))
 
 
 @kernel
@@ -210,4 +216,4 @@ def oil_stiffness(s, chambers):
     """Return beta (A_A^2/V_A + A_B^2/V_B) of the trapped oil, in N/m or Nm/rad  (C4)."""
     v_a, v_b = volumes(s, chambers)
     return chambers.beta * (chambers.area_a * chambers.area_a / v_a
-                            + chambers.area_b * chambers.area_b / v_b)
+                            + chambers.holds_b * chambers.area_b * chambers.area_b / v_b)

@@ -19,7 +19,7 @@ from isa_ros.core.timebase import FASTEST_RATE
 from isa_ros.core.units import LPM, MILLI, MILLILITRE, MPA
 from isa_ros.plant.cavitation import contents, lack
 from isa_ros.plant.chambers import volumes
-from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, OPEN, SHUT
+from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, OPEN, SHUT, trapped_area
 import numpy as np
 
 CUSHION = np.dtype([
@@ -51,6 +51,14 @@ def cushion_record(sheet: Cushion, area: float) -> np.record:
         k_restriction=(1.0 - sheet.restriction_blocked) * sheet.restriction_lpm * LPM / root,
         k_check=sheet.check_lpm * LPM / root, p_check=sheet.check_opening_kpa * 1e3,
         is_shut=float(sheet.check_stuck == SHUT), is_open=float(sheet.check_stuck == OPEN))
+
+
+def cushion_records(plant: object) -> dict[str, np.record]:
+    """Return those of both ends of the sheet of a plant; only cylinders have any."""
+    none = NoneCushion()
+    sheets = {name: getattr(plant, name, none) for name in ('cushion_a', 'cushion_b')}
+    return {name: cushion_record(own, 0.0 if own == none else trapped_area(
+        own, getattr(plant, 'drive').bore_mm)) for name, own in sheets.items()}
 
 
 @kernel

@@ -13,14 +13,16 @@ from isa_ros.core.record import record
 from isa_ros.errors import ParameterError
 from isa_ros.plant import (
     block_valve, chambers, coil, cushion, drives, friction, hose, hysteresis, load_holding,
-    mechanics, relief, sensors, spool, thermal, valve_record)
+    mechanics, relief, return_spring, sensors, spool, thermal, valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
 from isa_ros.plant.counterbalance import CounterbalanceHolding
-from isa_ros.plant.cushion_sheets import Cushion, NoneCushion, trapped_area
+from isa_ros.plant.cushion_sheets import Cushion, NoneCushion
 from isa_ros.plant.hose import LumpedHoses, NoneHoses
 from isa_ros.plant.load_holding import NoneHolding
+from isa_ros.plant.motor import add_losses, Motor
 from isa_ros.plant.pilot_check import PilotCheckHolding
+from isa_ros.plant.return_spring import CoilSpring, NoneSpring, Spring
 from isa_ros.plant.service_lines import holding_record, hosed_lines, rigid_lines
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
@@ -43,6 +45,7 @@ PLANT = np.dtype([
     ('cushion_b', cushion.CUSHION),
     ('hoses', hose.HOSES),
     ('holding_a', load_holding.HOLDING), ('holding_b', load_holding.HOLDING),
+    ('spring', return_spring.SPRING),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -98,6 +101,7 @@ class LinearPlant(PlantSheet):
     drive: drives.Cylinder
     cushion_a: Cushion = nested(NoneCushion())
     cushion_b: Cushion = nested(NoneCushion())
+    return_spring: Spring = nested(NoneSpring())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,12 +111,22 @@ class RotaryPlant(PlantSheet):
     drive: drives.Vane
 
 
+@dataclass(frozen=True, kw_only=True)
+class MotorPlant(PlantSheet):
+    """A motor that turns without an end; generalised units Nm, rad."""
+
+    drive: Motor
+
+
+Plant = LinearPlant | RotaryPlant | MotorPlant
+
+
 def is_heated(sheet: PlantSheet) -> bool:
     """Return whether the losses heat the actuator."""
     return isinstance(sheet.thermal, LumpedThermal)
 
 
-def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
+def plant_record(sheet: Plant) -> np.recarray:
     """Return the `PLANT` record of a sheet, shape (1,)."""
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
@@ -121,10 +135,16 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     shift = valve_record.null_shift(sheet.valve, rated)
     own_spool = spool.spool_record(sheet.spool, celsius, lands.x_max, shift)
     oil = chambers.chambers_record(sheet.drive, sheet.oil, sheet.mechanics.inertia)
+    own_spring = return_spring.spring_of(sheet)
+    if isinstance(own_spring, CoilSpring):
+        lands.f_pb = lands.f_bt = oil.holds_b = 0.0
     hoses = hose.hoses_record(sheet.hoses, oil)
     if hoses.is_on:     # what leaves a hose enters its chamber: only volumes keep the oil (C40)
         oil.least_a = oil.least_b = EVERY_STEP
     seals = friction.friction_record(sheet.friction)
+    moving = mechanics.mechanics_record(sheet.mechanics)
+    if isinstance(sheet, MotorPlant):
+        add_losses(sheet.drive, oil, seals, moving)
     return np.array([record(
         PLANT,
         coil=coil.coil_record(sheet.coil),
@@ -133,7 +153,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
         chambers=oil,
         relief=relief.relief_record(sheet.relief),
         friction=seals,
-        mechanics=mechanics.mechanics_record(sheet.mechanics),
+        mechanics=moving,
         sensors=sensors.sensors_record(sheet.sensors),
         thermal=thermal.thermal_record(
             sheet.thermal, celsius, spool.bias_per_k(sheet.spool) + shift[1], oil, lands, seals,
@@ -143,17 +163,9 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
         hoses=hoses,
         holding_a=holding_record(sheet.holding_a),
         holding_b=holding_record(sheet.holding_b),
-        **_cushions(sheet),
+        spring=return_spring.spring_record(own_spring),
+        **cushion.cushion_records(sheet),
         )], PLANT).view(np.recarray)
-
-
-def _cushions(sheet: LinearPlant | RotaryPlant) -> dict[str, np.record]:
-    """Return the `CUSHION` records of both ends; only a cylinder has any."""
-    if isinstance(sheet, RotaryPlant):
-        none = cushion.cushion_record(NoneCushion(), 0.0)
-        return {'cushion_a': none, 'cushion_b': none}
-    return {name: cushion.cushion_record(own, trapped_area(own, sheet.drive.bore_mm))
-            for name, own in (('cushion_a', sheet.cushion_a), ('cushion_b', sheet.cushion_b))}
 
 
 @kernel
@@ -201,7 +213,16 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         y.cushion, s, v, (p_a, per_a, more_a, in_a), (p_b, per_b, more_b, in_b), plant,
         rates.cushion)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
-    out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
+    if plant.spring.is_on > 0.0:
+        vent = return_spring.vent_pressure(p_t, plant.spring)
+        out_b = return_spring.vented(p_b, vent, in_b, per_b)
+        pulled = return_spring.spring_force(s, plant.spring)
+        push, kept = push - pulled, kept + pulled * v
+        returned = plant.spring.to_tank * out_b
+    else:
+        vent = p_t
+        out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
+        returned = out_b
     if of_volumes:
         rates.chambers.p_a = rates.chambers.p_b = 0.0
         rates.chambers.cavity_a, rates.chambers.cavity_b = chambers.lack_rates(
@@ -227,7 +248,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     if counts:
         powers.throttling += lost
         powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
-        powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
+        powers.relief = (p_a - p_t) * out_a + (p_b - vent) * out_b
         powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b) + kept
         if plant.hoses.is_on > 0.0:
             powers.cross_port += spilt
@@ -236,7 +257,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         powers.friction = f_friction * v
         powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
         powers.work = f_sensor * v_load
-    return f_sensor, q_p, q_t + out_a + out_b
+    return f_sensor, q_p, q_t + out_a + returned
 
 
 @kernel

@@ -1,14 +1,21 @@
 """The pressures of an actuator at rest: in its chambers, and in the hoses before them."""
 
 from isa_ros.plant.chambers import hydraulic_force
+from isa_ros.plant.return_spring import vent_pressure
 from isa_ros.plant.service_lines import rest_lines
 import numpy as np
 
 
 def null_pressures(plant: np.record, supply: float, back: float) -> tuple[float, float]:
-    """Return the pressures (Pa) into which the leaking lands divide that of the supply at null."""
+    """
+    Return the pressures (Pa) into which the leaking lands divide that of the supply at null.
+
+    An open chamber has that of its port.
+    """
     lands, span = plant.valve, supply - back
     share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
+    if plant.spring.is_on:
+        return back + span * share_a, vent_pressure(back, plant.spring)
     share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
     return back + span * share_a, back + span * share_b
 
@@ -19,10 +26,14 @@ def rest_pressures(
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
     At null the leaking lands divide the supply pressure; the rest of the force comes in equal
-    parts from both chambers, as far as their pressures stay between return and supply.
+    parts from both chambers, as far as their pressures stay between return and supply. A spring is
+    taken as retracted.
     """
-    oil = plant.chambers
+    oil, spring = plant.chambers, plant.spring
     p_a, p_b = null_pressures(plant, supply, back)
+    if spring.is_on:
+        held = force + spring.preload + oil.area_b * p_b
+        return min(max(held / oil.area_a, back), supply), p_b
     lacking = force - hydraulic_force(p_a, p_b, oil)
     p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
 

@@ -1,5 +1,5 @@
 """
-How well a valve's model fits its data sheet: each stated number, and what the model makes of it.
+How well the model of a valve or motor fits its data sheet: each stated number, and the model's.
 
 The lands are shut in as on a valve bench: flow at the rated drop without a load, leakage and load
 pressure with both ports shut. Frequencies are those of the spool behind the coil's current.
@@ -10,7 +10,8 @@ import math
 from typing import NamedTuple
 
 from isa_ros.core.units import LPM, MILLI, MPA, PERCENT
-from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
+from isa_ros.plant.motor import Motor
+from isa_ros.plant.plant import MotorPlant, Plant, plant_record
 from isa_ros.plant.response_fit import magnitude, response_at, SecondOrder
 from isa_ros.plant.servo_valve import port_flows
 from isa_ros.plant.spool import DataSheetSpool, ResponseSpool
@@ -33,13 +34,24 @@ class Fit(NamedTuple):
     unit: str
 
 
-def fits(plant: LinearPlant | RotaryPlant) -> list[Fit]:
-    """Return the fits of a plant with the valve of a data sheet; none of any other."""
+def fits(plant: Plant) -> list[Fit]:
+    """Return the fits of a plant's motor, and of its valve if that is of a data sheet."""
+    found = [*_efficiencies(plant.drive)] if isinstance(plant, MotorPlant) else []
     if not isinstance(plant.valve, DataSheetValve):
-        return []
+        return found
     lands = plant_record(plant)[0].valve
-    return [*_flows(plant.valve, lands), *_leakages(plant.valve, lands),
+    return [*found, *_flows(plant.valve, lands), *_leakages(plant.valve, lands),
             _pressure_gain(plant.valve, lands), *_responses(plant.spool)]
+
+
+def _efficiencies(sheet: Motor) -> Iterator[Fit]:
+    for k, (drop, speed) in enumerate(zip(sheet.pressure_mpa, sheet.speed_rpm)):
+        volumetric, mechanical = sheet.efficiencies(k)
+        at = f'at {drop:g} MPa and {speed:g} rpm'
+        yield Fit(f'volumetric efficiency {at}', sheet.volumetric_percent[k],
+                  volumetric / PERCENT, '%')
+        yield Fit(f'mechanical efficiency {at}', sheet.mechanical_percent[k],
+                  mechanical / PERCENT, '%')
 
 
 def ports(current_ma: float, p_a: float, p_b: float, p_s: float, lands: np.record) -> tuple[

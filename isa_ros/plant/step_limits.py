@@ -177,9 +177,12 @@ def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:
         rod = section['area_a'] - section['area_b']
         section['area_a'] *= factor * factor
         section['area_b'] = section['area_a'] - rod
+        section['swept_a'], section['swept_b'] = section['area_a'], section['area_b']
         return changed
     for name in knob.fields:
         section[name] *= factor
+    if knob.section == 'chambers' and 'area_a' in knob.fields and section['swept_a']:
+        section['swept_a'], section['swept_b'] = section['area_a'], section['area_b']
     return changed
 
 
@@ -266,19 +269,23 @@ def _actuator(
     own, rubs, oil = plant.mechanics, plant.friction, plant.chambers
     m, per_load = own.inertia, 1.0 / load.inertia
     damping = rubs.sigma1 + rubs.sigma2 + own.d_s + own.d_stop
-    per_a = oil.beta / (oil.dead_volume + oil.area_a * place)
-    per_b = oil.beta / (oil.dead_volume + oil.area_b * (oil.stroke - place))
+    per_a = oil.beta / (oil.dead_volume + oil.swept_a * place)
+    per_b = oil.beta / (oil.dead_volume + oil.swept_b * (oil.stroke - place))
     open_a, open_b = _conductances(plant.valve, is_open)
     open_a, open_b = min(open_a, FASTEST_RATE / per_a), min(open_b, FASTEST_RATE / per_b)
     if plant.hoses.is_on:   # through which a chamber decays at most at half of it  (C42)
         open_a, open_b = 0.5 * FASTEST_RATE / per_a, 0.5 * FASTEST_RATE / per_b
+    spring, holds = plant.spring, oil.holds_b
+    if holds == 0.0:
+        open_b = FASTEST_RATE / per_b
     return np.array([
         [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [-(own.k_s + own.k_stop) / m, -damping / m, -rubs.sigma0 / m,
+        [-(own.k_s + own.k_stop + spring.stiffness) / m, -damping / m, -rubs.sigma0 / m,
          oil.area_a / m, -oil.area_b / m, own.k_s / m, own.d_s / m],
         [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [0.0, -per_a * oil.area_a, 0.0, -per_a * (oil.c_li + open_a), per_a * oil.c_li, 0.0, 0.0],
-        [0.0, per_b * oil.area_b, 0.0, per_b * oil.c_li, -per_b * (oil.c_li + open_b), 0.0, 0.0],
+        [0.0, holds * per_b * oil.area_b, 0.0, holds * per_b * oil.c_li,
+         -per_b * (oil.c_li + open_b), 0.0, 0.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
         [own.k_s * per_load, own.d_s * per_load, 0.0, 0.0, 0.0,
          -(own.k_s + load.stiffness) * per_load, -(own.d_s + load.damping) * per_load]])

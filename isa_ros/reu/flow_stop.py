@@ -45,6 +45,7 @@ FLOW_STOP = np.dtype([
     ('extending', 'f8'), ('retracting', 'f8'),   # S, m6 | m9: pressure drop over both lands
     ('period', 'f8'), ('lag', 'f8'),             # of the conversions and of the valve T, s
     ('deceleration', 'f8'),                      # m/s2
+    ('is_endless', 'f8'),                        # 1: there is no end of the stroke
     ('rounding', 'f8'),                          # m/s, below which it fades
     ('span', 'f8'),                              # within which a position stands, m
     ('turning', 'f8'), ('window', 'f8'), ('longest', 'f8'),     # conversions
@@ -83,6 +84,7 @@ def flow_stop_record(
         extending=a * a * a / (model.f_pa * model.f_pa) + b * b * b / (model.f_bt * model.f_bt),
         retracting=a * a * a / (model.f_at * model.f_at) + b * b * b / (model.f_pb * model.f_pb),
         period=period, lag=lag, deceleration=deceleration,
+        is_endless=0.0,
         rounding=0.5 * ROUNDING * deceleration / crossover,
         span=max(REST_SPAN * model.stroke, 2.0 * resolution), turning=round(TURNING / period),
         window=round(REST_TIME / period), longest=round(LONGEST / period),
@@ -100,6 +102,8 @@ def _alpha(corner: float, period: float) -> float:
 @kernel
 def stop_deceleration(position, velocity, setup):
     """Return the deceleration of a stop, m/s2: the declared one, or more before an end  (R16)."""
+    if setup.is_endless > 0.0:
+        return setup.deceleration
     stroke = setup.model.stroke
     room = stroke - position if velocity > 0.0 else position
     room -= END_MARGIN * stroke + abs(velocity) * setup.lag

@@ -24,6 +24,7 @@ EVIDENCE = np.dtype([
     ('stiction', 'f8'), ('viscous', 'f8'),  # of the seals
     ('inertia', 'f8'),                      # of the moving part
     ('end_a', 'f8'), ('end_b', 'f8'),       # the cushions' lengths, m
+    ('preload', 'f8'), ('stiffness', 'f8'),     # of a spring that pushes in, N, N/m
     ('speed_rate', 'f8'),                   # of the speed estimate, Hz
     ('speed_steps', 'i8'), ('offset_steps', 'i8'),
     ('valve', VALVE_EVIDENCE),
@@ -49,13 +50,14 @@ def unexplained_force(measured, velocity, stroke, evidence, state):
     """
     Return by how much pressures and force sensor contradict each other  (R14), N or Nm.
 
-    max(0, |A_A p_A - A_B p_B - F| - (F_s + sigma_2 |v| + m |a|)) with the hydraulic force clipped
-    as the force sensor clips. At an end of the stroke, where a stop or cushion takes an unknown
-    force, 0.
+    max(0, |A_A p_A - A_B p_B - F_k - F| - (F_s + sigma_2 |v| + m |a|)) with the hydraulic force,
+    less F_k of M5, clipped as the force sensor clips. At an end of the stroke, where a stop or
+    cushion takes an unknown force, 0.
     """
     if measured.position <= evidence.end_a or measured.position >= stroke - evidence.end_b:
         return 0.0
     hydraulic = evidence.area_a * measured.pressure_a - evidence.area_b * measured.pressure_b
+    hydraulic -= evidence.preload + evidence.stiffness * measured.position
     expected = max(-evidence.force_range, min(evidence.force_range, hydraulic))
     allowed = (evidence.stiction + evidence.viscous * abs(velocity)
                + evidence.inertia * abs(state.acceleration))

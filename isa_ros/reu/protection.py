@@ -119,7 +119,7 @@ def protection_record(
         reaction[bit] = REACTIONS.index(own.reaction)
         delay[bit] = math.ceil(round(own.delay_ms * MILLI / period, _DIGITS))
         for which, level in (('warning', own.warning), ('trip', own.trip)):
-            if level and own.reaction != 'none' and (
+            if level and own.reaction != 'none' and rating < math.inf and (
                     bit != BIT.spool_deviation or evidence.valve.is_watched):
                 set_level(which, bit, level * rating)
     if sheet.setpoint_timeout_ms:

@@ -30,6 +30,7 @@ SUPERVISION = np.dtype([
     ('spool_range', 'f8'),                  # of its sensor, m; 0: there is none
     ('spool_gain', 'f8'),                   # m of spool per A of the amplifier
     ('opening', 'f8'),                      # of the spool, from which a flow is certain, m
+    ('has_two', 'i8'),                      # 1: the valve feeds both chambers
     ('follows_force', 'i8'),                # 1: there is a force block
     ('creep', 'f8'),                        # slowest speed towards a reference, m/s | rad/s
     ('slow_share', 'f8'),                   # dt/(T + dt) of the low-pass that takes the slow part
@@ -66,7 +67,7 @@ def beyond_range(measured, supply_pressure, fed_for, own):
                abs(measured.current) / own.current_range - 1.0)
     if own.spool_range > 0.0:
         part = max(part, abs(measured.spool) / own.spool_range - 1.0)
-    if fed_for > FILLING:
+    if fed_for > FILLING and own.has_two == 1:
         higher = max(measured.pressure_a, measured.pressure_b)
         part = max(part, 1.0 - higher / (ZERO * own.pressure_range))
     return max(0.0, part)

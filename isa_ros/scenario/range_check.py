@@ -55,6 +55,8 @@ def within_range(
 
 def _refuse_far(track: Track, actuator: ActuatorConfig, place: Place) -> None:
     """Refuse an equilibrium more than a stroke beyond the range: most likely a wrong unit."""
+    if actuator.sheet.is_endless:
+        return
     stroke = actuator.sheet.plant.drive.stroke
     for k, event in enumerate(track.events):
         if event.setpoint is not None:

@@ -47,15 +47,15 @@ class Watched:
 
     def __init__(self, sheet: Protection, watchdog: float = 0.0) -> None:
         evidence = record(
-            EVIDENCE, area_a=AREA_A, area_b=AREA_B, end_a=0.0, end_b=0.0,
-            force_range=RATINGS.force_range,
+            EVIDENCE, area_a=AREA_A, area_b=AREA_B, end_a=0.0, end_b=0.0, preload=0.0,
+            stiffness=0.0, force_range=RATINGS.force_range,
             stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
             offset_steps=0, valve=record(
                 VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN, play=0.0,
                 stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
         supervision = record(
             SUPERVISION, area_a=AREA_A, area_b=AREA_B, flow_gain=FLOW_GAIN, stroke=STROKE,
-            end_a=0.0, end_b=0.0,
+            end_a=0.0, end_b=0.0, has_two=1,
             force_range=RATINGS.force_range, pressure_range=RATINGS.pressure_range,
             current_range=RATINGS.current_range, spool_range=3e-4, spool_gain=SPOOL_GAIN,
             opening=4e-5, follows_force=1, creep=0.02, slow_share=PERIOD / (6.4e-3 + PERIOD),

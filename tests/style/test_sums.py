@@ -10,7 +10,6 @@ SIMULATED = (
     'actuator', 'config', 'core', 'loads', 'plant', 'reu', 'run', 'scenario', 'surroundings')
 EXACT = {
     ('actuator/saved_rows.py', '(rows.nbytes for rows in self._rows)'),
-    ('actuator/scales.py', 'sheet.plant.drive.areas'),
     ('config/runs/supplies.py', '(len(supply.sampled) for supply in supplies)'),
     ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
     ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),

@@ -20,7 +20,7 @@ from isa_ros.analysis.signals.recording import Recording, recording_of, SHORTEST
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
-from isa_ros.plant.plant import LinearPlant, RotaryPlant
+from isa_ros.plant.plant import LinearPlant, Plant
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 from isa_ros.text.table import aligned, GAP
 import numpy as np
@@ -95,7 +95,7 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
     return found
 
 
-def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+def identify(recording: Recording, sheet: Plant) -> list[Estimate]:
     """
     Return the estimates of one actuator beside the values of its sheet.
 
@@ -114,7 +114,7 @@ def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Est
 
 
 def _valve_and_oil(
-        recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+        recording: Recording, sheet: Plant) -> list[Estimate]:
     valve, oil = sheet.valve, sheet.oil
     assert not isinstance(valve, DataSheetValve)  # as `identify` has it
     curve, names = _curve(recording, valve)
@@ -156,11 +156,11 @@ def _curve(
         ('flow beyond the knee', 'l/min', 1, LPM, valve.remaining_lpm)]
 
 
-def _friction(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+def _friction(recording: Recording, sheet: Plant) -> list[Estimate]:
     fit = fit_friction(recording)
     friction = sheet.friction
     force, speed, drag = (
-        ('Nm', 'rad/s', 'Nms/rad') if isinstance(sheet, RotaryPlant) else ('N', 'm/s', 'Ns/m'))
+        ('N', 'm/s', 'Ns/m') if isinstance(sheet, LinearPlant) else ('Nm', 'rad/s', 'Nms/rad'))
     return [
         _estimate(name, unit, fit.values[k], fit.half_widths[k], configured, reason)
         for name, unit, k, configured, reason in (

@@ -17,7 +17,7 @@ from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section, SourcedValue
 from isa_ros.errors import ConfigError
 
-RATED = ('kind', 'drive', 'coil', 'spool', 'valve')
+RATED = ('kind', 'drive', 'coil', 'spool', 'valve', 'return_spring')
 """Entries of the plant with rated data."""
 
 

@@ -1,0 +1,161 @@
+"""A single-acting cylinder: its spring, and chamber B that is open to tank or air (M5, C33)."""
+
+from dataclasses import replace
+import math
+
+from isa_ros.actuator.ratings import forcing_areas, ratings_of
+from isa_ros.actuator.sheet import actuator_record, refuse_wiring
+from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
+from isa_ros.errors import ConfigError, ParameterError
+from isa_ros.plant import return_spring
+from isa_ros.plant.chambers import oil_stiffness
+from isa_ros.plant.plant import plant_record
+from isa_ros.plant.rest_oil import rest_pressures
+from isa_ros.plant.return_spring import CoilSpring
+import numpy as np
+import pytest
+from tests.actuator.closed_cylinder import ClosedCylinder
+from tests.actuator.test_energy import account, CLOSES, remainder
+from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
+
+SPRING = CoilSpring(preload=800.0, stiffness=6e3, open_to='tank')
+AREA = math.pi / 4.0 * 0.040**2
+ROD_SIDE = AREA - math.pi / 4.0 * 0.025**2
+
+
+def single(**values):
+    """Return the sheet of the model `cylinder` with a spring, rated with it as a file is."""
+    sheet = override(actuator_sheet('cylinder'), 'reu.position.force_in', 2000.0)
+    return override(sheet, 'plant.return_spring', replace(SPRING, **values))
+
+
+def test_the_spring_pushes_in_with_its_preload_and_rate():
+    own = return_spring.spring_record(SPRING)
+    assert return_spring.spring_force(0.0, own) == 800.0
+    assert return_spring.spring_force(0.2, own) == pytest.approx(2000.0, rel=1e-12, abs=0.0)
+    assert return_spring.spring_forces(SPRING, 0.2) == pytest.approx((800.0, 2000.0))
+    broken = return_spring.spring_record(replace(SPRING, broken=1.0))
+    assert return_spring.spring_force(0.2, broken) == 0.0 and broken.is_on == 1.0
+
+
+@pytest.mark.parametrize(('open_to', 'back', 'vent'), [('tank', 3e5, 3e5), ('breather', 3e5, 0.0)])
+def test_chamber_b_has_the_pressure_of_where_it_is_open(open_to, back, vent):
+    own = plant_record(single(open_to=open_to).plant).view(np.recarray)[0]
+    assert return_spring.vent_pressure(back, own.spring) == vent
+    force = 3000.0
+    p_a, p_b = rest_pressures(own, 14e6, back, force)
+    assert p_b == vent
+    assert p_a * AREA - p_b * ROD_SIDE - 800.0 == pytest.approx(force, rel=1e-9, abs=0.0)
+    assert rest_pressures(own, 14e6, back, 1e6)[0] == 14e6
+    assert rest_pressures(own, 14e6, back, -1e6)[0] == back
+
+
+def test_what_an_open_chamber_gains_leaves_it_and_its_pressure_follows():
+    """C33: d p/dt = r_max (vent - p); of boiling oil nothing is gained."""
+    elastance, surplus = 4e13, 3e-4
+    for p in (0.0, 2e5):
+        out = return_spring.vented(p, 1e5, surplus, elastance)
+        assert elastance * (surplus - out) == pytest.approx(
+            FASTEST_RATE * (1e5 - p), rel=1e-9, abs=0.0)
+    assert return_spring.vented(-1e5, 0.0, surplus, 0.0) == surplus
+
+
+def test_the_lands_of_b_are_plugged_and_its_oil_is_no_spring():
+    own = plant_record(single().plant).view(np.recarray)[0]
+    assert (own.valve.f_pb, own.valve.f_bt) == (0.0, 0.0)
+    assert min(own.valve.f_pa, own.valve.f_at) > 0.0
+    volume = float(own.chambers.dead_volume) + AREA * 0.05
+    assert oil_stiffness(0.05, own.chambers) == pytest.approx(
+        7e8 * AREA * AREA / volume, rel=1e-9, abs=0.0)
+
+
+def test_a_free_piston_rings_at_oil_and_spring_together():
+    """M5, C4: sealed A, 50 kg; 20 periods of sqrt((k_oil + k)/m) by its zero crossings."""
+    stiff = replace(SPRING, preload=0.0, stiffness=2e6)
+    cylinder = ClosedCylinder('cylinder', 0.1, 2e6, free=True, return_spring=stiff,
+                              mechanics__inertia=50.0)
+    own = cylinder.own
+    own.chambers.p_b = 0.0
+    own.chambers.p_a = (2e6 * 0.1) / AREA       # in balance
+    own.mechanics.velocity = 1e-3
+    speeds = []
+    for _ in range(3000):
+        cylinder.move()
+        speeds.append(float(own.mechanics.velocity))
+    crossings = np.flatnonzero(np.diff(np.sign(speeds)))
+    period = 2.0 * (crossings[-1] - crossings[0]) / (len(crossings) - 1) * PLANT_STEP
+    k_oil = 7e8 * AREA * AREA / (12.57e-6 + AREA * 0.1)
+    # amplitude 5 um in 100 mm; to a step at both ends of 3000
+    assert period == pytest.approx(2.0 * math.pi * math.sqrt(50.0 / (k_oil + 2e6)), rel=1e-3)
+    assert float(own.chambers.p_b) == 0.0
+
+
+@pytest.mark.parametrize('open_to', ['tank', 'breather'])
+def test_it_extends_by_pressure_and_comes_back_by_its_spring(open_to):
+    """Oil swept by B goes to the tank and comes from there, or is air; the account closes."""
+    found = smart_actuator('cylinder', 'mass', sheet=single(open_to=open_to), position=0.05)
+    for position in (0.15, 0.05):
+        start = float(found.reply.position)
+        found.accept(setpoint(position=position))
+        drawn = returned = 0.0
+        for _ in range(12000):
+            found.tick()
+            drawn += float(found.reply.supply_volume)
+            returned += float(found.reply.return_volume)
+        moved = float(found.reply.position) - start
+        assert moved == pytest.approx(position - start, abs=0.04)
+        # all that comes goes again, but for what A gained, less what B lost to the tank; leakage
+        # is in both, and the oil of A is under some MPa more: 5e-7 m3
+        gained = AREA * moved - (ROD_SIDE * moved if open_to == 'tank' else 0.0)
+        assert drawn - returned == pytest.approx(gained, abs=2e-6)
+        assert found.sample.trips == 0.0 and found.sample.chamber_pressure_b == 0.0
+    assert remainder(account(found)) < CLOSES
+
+
+def test_with_a_broken_spring_it_stays_out():
+    found = smart_actuator('cylinder', 'mass', sheet=single(broken=1.0), position=0.15)
+    found.accept(setpoint(position=0.05))
+    for _ in range(5000):
+        found.tick()
+    assert float(found.reply.position) > 0.14
+
+
+def test_its_ratings_are_those_of_pressure_and_spring():
+    own = plant_record(single().plant)[0]
+    opens = float(own.relief.p_open)
+    out, back = forcing_areas(own)
+    assert out * opens == pytest.approx(AREA * opens - 2000.0, rel=1e-9, abs=0.0)
+    assert back * opens == pytest.approx(1400.0, rel=1e-9, abs=0.0)
+    plain = plant_record(actuator_sheet('cylinder').plant)[0]
+    assert forcing_areas(plain) == (plain.chambers.area_a, plain.chambers.area_b)
+    assert ratings_of(own).speed / ratings_of(plain).speed == pytest.approx(
+        ROD_SIDE / AREA, rel=1e-9, abs=0.0)
+
+
+def test_the_reu_knows_the_sound_spring():
+    """R14 takes its force into account; a broken one is told by it."""
+    evidence = actuator_record(single(broken=1.0), 0).view(np.recarray)[0].reu.protection.evidence
+    assert (evidence.preload, evidence.stiffness) == (800.0, 6e3)
+
+
+def test_a_linearising_block_is_refused():
+    sheet = actuator_sheet('cylinder', 'default', 'feedback_linearisation')
+    refuse_wiring(sheet)
+    with pytest.raises(ConfigError, match='feedback_linearisation and plant.return_spring.kind'):
+        refuse_wiring(override(sheet, 'plant.return_spring', SPRING))
+
+
+@pytest.mark.parametrize(('name', 'value'), [
+    ('preload', -1.0), ('stiffness', 2e8), ('broken', 2.0), ('broken', 0.5), ('open_to', 'sea')])
+def test_ranges_are_refused_by_name(name, value):
+    with pytest.raises(ParameterError, match=f'CoilSpring.{name} = '):
+        replace(SPRING, **{name: value})
+
+
+@pytest.mark.parametrize('p', [-1e5, 0.0, 7e6])
+def test_compiled_kernels_equal_python(p):
+    own = return_spring.spring_record(SPRING)
+    for kernel, arguments in (
+            (return_spring.spring_force, (0.123, own)), (return_spring.vent_pressure, (p, own)),
+            (return_spring.vented, (p, 1e5, 3e-4, 4e13))):
+        assert kernel(*arguments) == kernel.py_func(*arguments)
