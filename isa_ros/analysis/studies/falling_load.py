@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 import warnings
 
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png_with_palette
@@ -44,7 +45,7 @@ CASES: Mapping[str, Mapping[str, Any] | None] = {
 
 _LIFT = 'actuators.lift.parameters.plant'
 _STIFF = {'stiffness': 2e6, 'damping': 6e4}
-_SCENARIO = {
+_SCENARIO: Tree = {
     'name': NAME, 'duration_s': SECONDS,
     'tracks': {'lift': [{'t_s': 0.0, 'position': 'hold', 'effort': 38500.0, **_STIFF}],
                'tilt': [{'t_s': 0.0, 'position': 'hold', 'effort': -12000.0, **_STIFF}]},
@@ -53,8 +54,8 @@ _HEAD = """# A crane whose hose bursts
 
 The forestry crane of `config/crane.yaml` holds its load, 38 kN at the lift cylinder, 5.8 MPa in
 its chamber A. After a second the hose of that chamber bursts. A block valve in the valve block
-is on the wrong side of it; a valve on the cylinder holds the load ([parts.md](parts.md)). This page
-is written by
+is on the wrong side of it; a valve on the cylinder holds the load ([parts.md](parts.md)).
+This page is written by
 
     ./isa study falling_load --out docs
 """
