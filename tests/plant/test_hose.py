@@ -167,11 +167,12 @@ def test_what_leaks_and_bursts_goes_outside_and_nothing_comes_in():
 
 def test_warm_oil_is_thinner_and_softer_in_the_hose_too():
     own = row()
-    hose.warm_hoses(0.25, 0.9 * own.beta, own)
+    sheets = float(own.beta)
+    hose.warm_hoses(0.25, 0.9 * sheets, own)
     assert series_flow(1e4, 0.0, 0.0, own) == pytest.approx(
         4.0 * series_flow(1e4, 0.0, 0.0, row()), rel=1e-12, abs=0.0)
     assert soft_volume(own) / own.beta == pytest.approx(
-        math.pi / 4.0 * 1e-4 * 2.0 / own.beta + 1.5e-6 * 2.0 / 20e6, rel=1e-12, abs=0.0)
+        math.pi / 4.0 * 1e-4 * 2.0 / (0.9 * sheets) + 1.5e-6 * 2.0 / 20e6, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize('values, message', [
