@@ -115,6 +115,12 @@ def test_a_poppet_that_swings_on_its_oil_within_a_step_is_refused_and_its_bound_
     least = least_lag(plant.holding_b, plant.chambers.beta / plant.chambers.dead_volume,
                       plant.hoses.beta / (plant.hoses.volume * (
                           1.0 + plant.hoses.beta * plant.hoses.per_wall)), plant.relief.p_open)
+    k = 200.0 / 60e3 / math.sqrt(0.5e6)
+    oil, soft = plant.chambers, plant.hoses.volume * (
+        1.0 / plant.hoses.beta + plant.hoses.per_wall)
+    swing = k * math.sqrt(plant.relief.p_open) / 0.4e6 * (
+        oil.beta / oil.dead_volume + 5.0 / soft)    # w^2 times the lag
+    assert least == pytest.approx(swing * 40e-6 * 40e-6, rel=1e-9, abs=0.0)
     with pytest.raises(ParameterError, match=(
             r'plant.holding_b.lag_ms = 0.1 ms, must be >= [0-9.]+ ms with its flow, its opening')):
         refuse_too_fast(plant, with_lines(), LoadSide())
