@@ -11,7 +11,7 @@ def compile_kernels() -> None:
     """
     Load the kernels of all shipped configurations, or compile them while others wait.
 
-    From an empty cache one core needs about 20 s, and as many cores as try need 20 s each.
+    Others wait: two that compile at once would each compile all.
     """
     assert CACHE is not None, 'the tests need a directory for compiled kernels'
     with locked(CACHE):
