@@ -15,7 +15,8 @@ from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
 from isa_ros.surroundings.circuits.circuit import Fed
-from isa_ros.surroundings.surroundings import SupplyCircuit, Surroundings
+from isa_ros.surroundings.feeding import SupplyCircuit
+from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 
 

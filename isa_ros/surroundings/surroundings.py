@@ -7,7 +7,7 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
@@ -17,9 +17,10 @@ from isa_ros.core.signals import SUPPLY_REPLY
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
-from isa_ros.surroundings.circuits.circuit import Circuit, Fed
-from isa_ros.surroundings.circuits.sheet import CircuitSupply
-from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.feeding import (
+    index_of, made, n_samples, summed, SupplyCircuit)
+from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE
 from isa_ros.surroundings.supply_port import SupplyPorts
 import numpy as np
 
@@ -45,25 +46,6 @@ def line_of(group: str) -> str:
     return f'{EMERGENCY_STOP}.{group}'
 
 
-class SupplyCircuit(NamedTuple):
-    """One supply and the actuators it feeds."""
-
-    name: str
-    """Name of the supply for controllers and in errors."""
-    sheet: SupplySheet
-    rows: Sequence[int]
-    """Rows of the fed actuators."""
-    flow_slope: float
-    """Sum of their valves' largest dQ/dP, m3/s/Pa."""
-    fed: Sequence[Fed] = ()
-    """Of a circuit its manifolds that feed them."""
-
-    @property
-    def groups(self) -> Sequence[Sequence[int]]:
-        """Return the rows that each of its nodes feeds."""
-        return [own.rows for own in self.fed] or [self.rows]
-
-
 class Surroundings:
     """
     Supplies and bodies over a run; an actuator that moves no body has its own load.
@@ -79,7 +61,7 @@ class Surroundings:
         self.circuits = tuple(circuits)
         self.bodies = dict(bodies)
         """By name, in the order of the run."""
-        ends = np.cumsum([0, *(_n_samples(own.sheet) for own in circuits)])
+        ends = np.cumsum([0, *(n_samples(own.sheet) for own in circuits)])
         self.supplies: Records = np.zeros(ends[-1], SUPPLY_SAMPLE)
         """
         `SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten.
@@ -87,9 +69,9 @@ class Surroundings:
         A circuit has one more for each of its parts.
         """
         self._supplies = [
-            _made(own, step_ns, self.supplies[first:last])
+            made(own, step_ns, self.supplies[first:last])
             for own, first, last in zip(circuits, ends, ends[1:])]
-        self._owners = [own.name for own in circuits for _ in range(_n_samples(own.sheet))]
+        self._owners = [own.name for own in circuits for _ in range(n_samples(own.sheet))]
         self._circuits = [own for own in self._supplies if isinstance(own, Circuit)]
         self._ports = SupplyPorts(len(starts), [
             (supply, circuit.groups)
@@ -104,7 +86,7 @@ class Surroundings:
         """All that may change during a run, by SUPPLY.KEY or BODY.KEY, and the lines of groups."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
-        self._fed = [_index(circuit.rows) for circuit in circuits]
+        self._fed = [index_of(circuit.rows) for circuit in circuits]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
@@ -231,8 +213,8 @@ class Surroundings:
         energies = self._ports.take(fed)
         for supply, circuit in zip(self._supplies, self.circuits):
             groups = circuit.groups
-            oil = [_sum(drawn, rows) for rows in groups], [_sum(returned, rows) for rows in groups]
-            paid = [_sum(energies, rows) for rows in groups] if energies else []
+            oil = [summed(drawn, rows) for rows in groups], [summed(returned, rows) for rows in groups]
+            paid = [summed(energies, rows) for rows in groups] if energies else []
             if not isinstance(supply, Circuit):
                 is_paid = supply.has_port and paid
                 supply.advance(oil[0][0], oil[1][0], paid[0] if is_paid else None)
@@ -312,36 +294,8 @@ class Surroundings:
         self._values.accept(beneath)
 
 
-def _n_samples(sheet: SupplySheet) -> int:
-    """Return the number of samples of a supply: its own, of a circuit also those of its parts."""
-    return 1 + len(sheet.by_name) if isinstance(sheet, CircuitSupply) else 1
-
-
-def _made(own: SupplyCircuit, step_ns: int, samples: Records) -> Supply | Circuit:
-    """Return a supply or circuit over a run, whose samples are these rows."""
-    if isinstance(own.sheet, CircuitSupply):
-        return Circuit(own.sheet, step_ns, own.fed, samples, own.name)
-    return Supply(own.sheet, step_ns, own.flow_slope, samples, own.name)
-
-
 def _changed(sheet: _P, owner: str, values: Mapping[str, float]) -> _P:
     """Return the sheet of a supply or body with those of the values that are its own."""
     prefix = f'{owner}.'
     own = {name: value for name, value in values.items() if name.startswith(prefix)}
     return with_changes(sheet, changeables(sheet, prefix), own)
-
-
-def _index(rows: Sequence[int]) -> slice | np.ndarray:
-    """Return the index of rows: where they follow each other a slice, ten times as fast."""
-    first = rows[0] if rows else 0
-    if list(rows) == list(range(first, first + len(rows))):
-        return slice(first, first + len(rows))
-    return np.array(rows, np.int64)
-
-
-def _sum(values: Sequence[float], rows: Sequence[int]) -> float:
-    """Return the sum in the order of the rows; `sum` of Python 3.12 rounds differently."""
-    total = 0.0
-    for row in rows:
-        total += values[row]
-    return total
