@@ -22,7 +22,7 @@ def with_spool(cylinder, x):
     plant = cylinder.plant
     plant.valve.per_root_drop = np.rec.array(plant_row('isa_v5')).valve.per_root_drop
     plant.spool.is_stuck, cylinder.own.spool.position = 1.0, x
-    cylinder.port['supply_pressure'] = 20e6
+    cylinder.port['supply_pressure'] = cylinder.state.supply.pressure = 20e6
     lands, _ = conductances(x, plant.valve)
     return tuple(map(float, lands))
 
