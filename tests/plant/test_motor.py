@@ -6,7 +6,7 @@ import math
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.integration import flat, rk4_steps, scratch
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
-from isa_ros.core.signals import COMMAND, HAS_QUICK_STOP, LOAD_PORT
+from isa_ros.core.signals import COMMAND, HAS_QUICK_STOP, LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant.chambers import lack_rates, volumes
@@ -50,16 +50,17 @@ def test_a_steady_shaft_loses_what_its_sheet_says(speed):
     plant = constants.view(np.recarray)[0].plant
     rows, rates = scratch()
     state = rows.view(np.recarray)[0]
-    port = np.zeros(1, LOAD_PORT)
+    port, feed = np.zeros(1, LOAD_PORT), np.zeros(1, SUPPLY_PORT)
     port['supply_pressure'], port['v0'] = 20e6, speed
+    state.supply.pressure = 20e6
     state.load.velocity = state.plant.mechanics.velocity = speed
     state.plant.chambers.p_a = state.plant.chambers.p_b = 10e6
     turned = state.load.position = state.plant.mechanics.position = 3.0
     current = math.copysign(0.006, speed)
     for _ in range(2):      # the second tenth of a second is steady
         state.totals.supply_volume = state.totals.return_volume = state.totals.impulse = 0.0
-        rk4_steps(5000, PLANT_STEP, current, port[0], constants[0], rows, rates, flat(rows),
-                  flat(rates))
+        rk4_steps(5000, PLANT_STEP, current, port[0], feed[0], constants[0], rows, rates,
+                  flat(rows), flat(rates))
     own, losses = state.plant, MOTOR.losses()
     assert own.mechanics.position == pytest.approx(turned + speed * 0.2, abs=1e-2)
     drop = float(own.chambers.p_a - own.chambers.p_b)
