@@ -69,23 +69,26 @@ def test_a_node_falls_with_its_pressure_by_its_slope(
     assert found / 2e4 == pytest.approx(slope, rel=1e-6, abs=1e-18)
 
 
-def test_an_open_dump_is_half_of_its_flow_over_the_pressure() -> None:
+@pytest.mark.parametrize('opening', [1.0, 0.5])
+def test_an_open_dump_is_half_of_its_flow_over_the_pressure(opening: float) -> None:
     """C14: d(K sqrt(P))/dP = Q/(2 P) far above the delta of V5, which is some kPa."""
     plant = Supply(replace(MOVING, dump=ValveDump(
         rated_lpm=60.0, rated_drop_mpa=0.7, time_constant_ms=20.0)), MS, 2e-12)
-    plant.state['dump_opening'] = 1.0
+    plant.state['dump_opening'] = opening
     node = plant.nodes()[0]
     assert node.inflow < 0.0
     assert node.slope == pytest.approx(-0.5 * node.inflow / 20.7e6, rel=1e-6, abs=0.0)
 
 
-def test_the_pump_is_the_trend_of_its_node() -> None:
-    """C8: (Q_demand - Q)/T, with the pump at rest and 0.2 of 0.5 MPa below the set point."""
+@pytest.mark.parametrize('flow_lpm', [0.0, 6.0])
+def test_the_pump_is_inflow_and_trend_of_its_node(flow_lpm: float) -> None:
+    """C8: Q and (Q_demand - Q)/T, 0.2 of 0.5 MPa below the set point."""
     plant = Supply(MOVING, MS, 2e-12)
-    plant.state['pressure'] = 20.5e6
+    plant.state['pressure'], plant.state['pump_flow'] = 20.5e6, flow_lpm * LPM
     node = plant.nodes()[0]
-    assert node.trend == pytest.approx(0.4 * 12.0 * LPM / 0.03, rel=1e-9)
-    assert (node.pressure, node.inflow) == (20.5e6, 0.0)
+    assert node.trend == pytest.approx((0.4 * 12.0 - flow_lpm) * LPM / 0.03, rel=1e-9, abs=0.0)
+    assert node.inflow == pytest.approx(flow_lpm * LPM, rel=1e-12, abs=0.0)
+    assert node.pressure == 20.5e6
 
 
 def test_a_supply_that_holds_its_pressure_has_no_node() -> None:
