@@ -161,3 +161,13 @@ def test_a_warning_of_mujoco_ends_the_run(
         body.stepped(body.state, np.full((5, 2), 1e13), 1e-3)
     with pytest.raises(SimulationDiverged, match='MuJoCo: mjWARN_BAD'):     # one warning is enough
         MujocoBody(*model_of(), mounting()).motion(body.state, np.array([1e13, 0.0]))
+
+
+def test_the_hinge_of_the_page_turns_to_where_its_rotor_is_told(
+        capsys: pytest.CaptureFixture[str]) -> None:
+    """The rod hangs at 52.9 degrees of the rotor; 59 Nm sin(2.9 deg) on 300 Nm/rad is 0.6 deg."""
+    program = next(text for text in re.findall(r'```python\n(.*?)```', PAGE, re.DOTALL)
+                   if 'qfrc_bias' in text)
+    exec(program, {})
+    place = float(capsys.readouterr().out.split(']')[0].strip('['))
+    assert place == pytest.approx(50.0, abs=1.0)

@@ -70,7 +70,7 @@ def surroundings_of(
         rows = [run.index(name) for _, name in own.joints]
         bodies[own.name] = own.body(Made(
             run.step_ns, run.seed, rows, factories.get(own.name),
-            [run.actuators[row] for row in rows]))
+            [run.actuators[row] for row in rows], run.source))
     return Surroundings(
         circuits, bodies, starts, [plant.mechanics.k_s for plant in plants], run.step_ns,
         [group.name for group in run.stop_groups])

@@ -210,7 +210,7 @@ def _load_tables(model: Model) -> Iterator[str]:
 
 def _value(value: Any) -> str:
     if isinstance(value, tuple):
-        return ', '.join(_value(one) for one in value)
+        return ', '.join(_value(one) for one in value) or 'none'
     return f'{value:.10g}' if isinstance(value, float) else str(value)
 
 

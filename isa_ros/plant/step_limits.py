@@ -6,16 +6,17 @@ valve closed and wide open; the eigenvalues tell whether the step damps what the
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP, PLANT_STEP_NS
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MILLI, of_coordinate, quantity
 from isa_ros.errors import ParameterError
 from isa_ros.plant.coil import EXPLICIT
 from isa_ros.plant.hose import soft_volume
 from isa_ros.plant.load_holding import least_lag, NO_HOLDING
+from isa_ros.plant.plant import MotorPlant, RotaryPlant
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import DIRECT, PILOTED
 from isa_ros.plant.thermal import coldest, warm
@@ -71,7 +72,8 @@ _KNOBS = (
     _Knob('spool.loop_gain_per_s', 'spool', ('k_loop',), True),
     _Knob('coil.coil_inductance', 'coil', ('inductance',), False),
     _Knob('coil.bandwidth_rad_per_s', 'coil', ('p_c',), True))
-_OF_LOAD = (('inertia', False), ('stiffness', True), ('damping', True))
+_OF_LOAD = (('inertia', 'kg | kg m2', False), ('stiffness', 'N/m | Nm/rad', True),
+            ('damping', 'Ns/m | Nms/rad', True))
 
 
 def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
@@ -116,7 +118,7 @@ def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
     """Refuse a `PLANT` record as `refuse_too_fast`; ``when`` ends the message."""
     if _is_followed(plant, load):
         return
-    changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, load)]
+    changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, sheet, load)]
     changes.sort(key=lambda change: max(change.factor, 1.0 / change.factor))
     bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
         'moving part, force sensor, oil, friction and load are too fast together')
@@ -129,12 +131,12 @@ def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
 def _reasons(plant: np.record, sheet: object, load: LoadSide) -> list[str]:
     """Return the parameters of which no single one suffices, but half of it slows the plant."""
     fastest, found = _fastest(plant, load), []
-    for knob, value in _values(sheet):
+    for knob, value, unit in _values(sheet):
         def follows(factor: float) -> bool:
             return _is_followed(_scaled(plant, knob, factor), load)
         slower = _fastest(_scaled(plant, knob, 0.5 if knob.less_helps else 2.0), load)
         if slower < _SLOWER * fastest and _least_factor(follows, knob.less_helps) is None:
-            found.append(f'plant.{knob.name} = {value:g}')
+            found.append(f'plant.{knob.name} = {quantity(f"{value:g}", unit)}')
     return found
 
 
@@ -152,21 +154,27 @@ class _Change(NamedTuple):
 
 
 def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
-    for knob, value in _values(sheet):
+    for knob, value, unit in _values(sheet):
         def follows(factor: float) -> bool:
             return _is_followed(_scaled(plant, knob, factor), load)
         factor = _least_factor(follows, knob.less_helps)
         if factor is not None:
-            yield _change(f'plant.{knob.name}', value, factor, knob.less_helps)
+            yield _change(f'plant.{knob.name}', value, unit, factor, knob.less_helps)
 
 
-def _values(sheet: object) -> Iterator[tuple[_Knob, float]]:
-    """Yield the knobs that a sheet has, and their values."""
+def _values(sheet: object) -> Iterator[tuple[_Knob, float, str]]:
+    """Yield the knobs that a sheet has, their values and units."""
     for knob in _KNOBS:
         part, name = knob.name.split('.')
-        value = getattr(getattr(sheet, part, None), name, 0.0)
+        own: Any = getattr(sheet, part, None)
+        value = getattr(own, name, 0.0)
         if value > 0.0:
-            yield knob, value
+            unit = next(f.metadata['unit'] for f in fields(own) if f.name == name)
+            yield knob, value, of_coordinate(unit, _is_rotary(sheet))
+
+
+def _is_rotary(sheet: object) -> bool:
+    return isinstance(sheet, (RotaryPlant, MotorPlant))
 
 
 def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:
@@ -186,20 +194,22 @@ def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:
     return changed
 
 
-def _changes_of_load(plant: np.record, load: LoadSide) -> Iterator[_Change]:
-    for (field, less_helps), name in zip(_OF_LOAD, load.names):
+def _changes_of_load(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
+    for (field, unit, less_helps), name in zip(_OF_LOAD, load.names):
         value = getattr(load, field)
 
         def follows(factor: float) -> bool:
             return _is_followed(plant, replace(load, **{field: value * factor}))
         if 0.0 < value < math.inf and (
                 factor := _least_factor(follows, less_helps)) is not None:
-            yield _change(f'load.{name}', value, factor, less_helps)
+            yield _change(f'load.{name}', value, of_coordinate(unit, _is_rotary(sheet)), factor,
+                          less_helps)
 
 
-def _change(name: str, value: float, factor: float, less_helps: bool) -> _Change:
+def _change(name: str, value: float, unit: str, factor: float, less_helps: bool) -> _Change:
     sign = '<=' if less_helps else '>='
-    return _Change(factor, f'{name} = {value:g}, must be {sign} {value * factor:.3g}')
+    return _Change(factor, f'{name} = {quantity(f"{value:g}", unit)}, must be {sign} '
+                   f'{quantity(f"{value * factor:.3g}", unit)}')
 
 
 def _least_factor(follows: Callable[[float], bool], less_helps: bool) -> float | None:

@@ -104,7 +104,7 @@ def prepare(
     run = adapted(load_run(request.config, changes.run)).with_controllers(
         request.controllers).stored(request.compression, request.split_mb, 'record options')
     for body in run.bodies:
-        body.refuse_absent()
+        body.refuse_absent(run.source)
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_in_form(run))
         run.record.refuse_misfits(

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _FIRST_TICKS = 1000     # samples before the log grows
+_BEYOND = 0.5           # of the stroke, for a load beyond its end; end stops allow far less
 
 
 class Actuators:
@@ -52,6 +53,10 @@ class Actuators:
         self._simulation: Simulation | None = None
         self._log: LogSink | None = None
         self._rows: NDArray[np.int64] = np.zeros(0, np.int64)
+        sheets = [run.configuration.actuator(name).sheet for name in self.names]
+        self._units = ['rad' if own.is_rotary else 'm' for own in sheets]
+        self._strokes = np.array([
+            np.inf if own.is_endless else own.plant.drive.stroke for own in sheets])
 
     def start(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> None:
         """
@@ -105,7 +110,8 @@ class Actuators:
         Raises
         ------
         ConfigError
-            `start` was not called, or a number is not finite.
+            `start` was not called, a number is not finite, or a position is farther beyond an end
+            of the stroke than half of it.
         SimulationDiverged
             A state is no longer finite.
 
@@ -119,6 +125,7 @@ class Actuators:
             port[name] = 0.0 if given is None else numbers_of(
                 self.names, {'x0': 'position', 'v0': 'velocity', 'a0': 'acceleration'}.get(
                     name, name), given)
+        self._refuse_far()
         for name, mass in zip(self.names, port['inverse_mass'].tolist()):
             if mass < 0.0:
                 raise ConfigError(f'{name}: inverse_mass = {mass:g}, must be >= 0')
@@ -127,6 +134,16 @@ class Actuators:
         simulation.step()
         means: NDArray[np.float64] = simulation.loop.rows.replies['mean_forces'][self._rows]
         return means.T.copy()
+
+    def _refuse_far(self) -> None:
+        """Refuse a position that is far outside the stroke, before it breaks the tick."""
+        place, stroke = self._port['x0'], self._strokes
+        is_far = np.abs(place - 0.5 * stroke) > (0.5 + _BEYOND) * stroke
+        for k in np.flatnonzero(is_far).tolist():
+            unit, beyond = self._units[k], _BEYOND * stroke[k]
+            raise ConfigError(
+                f'{self.names[k]}: position = {place[k]:g} {unit}, must be '
+                f'{-beyond:g} to {stroke[k] + beyond:g} {unit}: half a stroke beyond its ends')
 
     @property
     def forces(self) -> NDArray[np.float64]:

@@ -165,5 +165,5 @@ def test_a_temperature_at_which_the_plant_is_too_fast_is_refused() -> None:
     with pytest.raises(ParameterError) as refused:
         refuse_too_fast(plant_record(cold.plant)[0], cold.plant, LoadSide())
     message = str(refused.value)
-    assert 'plant.friction.viscous = 1000, must be <= ' in message
+    assert 'plant.friction.viscous = 1000 Ns/m, must be <= ' in message
     assert message.endswith(', for the plant step of 20 us with oil at -30 celsius')

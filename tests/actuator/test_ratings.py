@@ -1,4 +1,4 @@
-"""The lag of a valve, by which a stop is designed (R16); other ratings in the tests of their use."""
+"""The lag of a valve (R16); other ratings are tested where they are used."""
 
 from isa_ros.actuator.ratings import valve_lag
 import pytest

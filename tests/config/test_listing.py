@@ -162,3 +162,9 @@ def test_a_changed_value_of_a_run_file_has_its_key() -> None:
 def test_a_changed_value_is_checked(name: str, key: str, message: str) -> None:
     with pytest.raises(IsaError, match=message):
         describe(name, values={key: -1})
+
+
+def test_an_empty_list_is_listed_as_none() -> None:
+    table = describe('rig_linear', values={'emergency_stops.all.reactions': []})
+    line = next(line for line in table.splitlines() if 'emergency_stops.all.reactions' in line)
+    assert line.split()[1] == 'none'

@@ -224,7 +224,7 @@ def test_changes_are_read_as_faults_are_and_written_back():
      r'at 0.2 s, load.force = -2.00005e\+07 N, must be >= -2e\+07 N '),
     ({**PUSH, 'until_s': 0.5, 'set': {'load.force': 1.9e7}, 'sine': {**SINE, 'amplitude': 2e6}},
      r'at 0.2 s, load.force = 2.1e\+07 N, must be <= 2e\+07 N '),
-    ({**PUSH, 'set': {'load.inertia': 1e-6}}, r'set: load.inertia = 1e-06, must be >= '),
+    ({**PUSH, 'set': {'load.inertia': 1e-6}}, r'set: load.inertia = 1e-06 kg, must be >= '),
 ])
 def test_a_bad_push_is_refused_in_one_line(tree, message):
     with pytest.raises(ConfigError, match=message) as raised:

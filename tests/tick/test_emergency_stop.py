@@ -544,6 +544,16 @@ def test_a_group_that_cannot_be_is_refused(group, words):
         run(group)
 
 
+def test_a_group_that_dumps_at_once_has_a_dump_valve():
+    ideal = {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0}
+    with pytest.raises(ConfigError, match=(
+            'emergency_stops.pair.dumps = at_once is not used: no dump valve is in supply')):
+        isa_ros.load({**tree({'dumps': 'at_once'}), 'supply': ideal})
+    isa_ros.load({**tree({'dumps': 'at_rest'}), 'supply': ideal})
+    isa_ros.load({**tree({'dumps': 'at_once'}), 'supply': {**ideal, 'dump': {
+        'kind': 'lag', 'time_constant_ms': 1.0}}})
+
+
 @pytest.mark.parametrize(('fault', 'words'), [
     ({'emergency_stop': 'par'}, "'par' is not a group; did you mean pair"),
     ({'emergency_stop': 'pair', 'set': {'opened': 1}}, 'set is not used'),

@@ -69,7 +69,7 @@ ACTUATOR = KeyTable((
     Key('beyond_range', choice_of(BEYOND_RANGE), 'treatment of a setpoint beyond the range', None,
         meant=BEYOND_RANGE[0]),
     Key('auto_enable', FLAG, 'whether it is enabled once it is initialised', True),
-    Key('mode', ANY_NAME, 'mode at t = 0', None, meant='every block that is on'),
+    Key('mode', TEXT, 'mode at t = 0', None, meant='every block that is on'),
     Key('load', Layer(LocalLoad),
         'its own load, by a kind of the model; values that it leaves out are those of the model; '
         'an actuator of a body has none', None, 'required'),
@@ -124,12 +124,12 @@ def actuator_of(
         _refuse_sheet(sheet, load_side, place, around.step_ns)
     beyond, mode = values['beyond_range'], values['mode']
     if mode is not None:
-        mode_of(str(mode), sheet.reu, str(place / 'mode'))
+        mode_of(mode, sheet.reu, str(place / 'mode'))
     label = ' + '.join([values['preset'], *values['variants']])
     return ActuatorConfig(
         name, values['model'], label, sheet, load, position,
         None if beyond == BEYOND_RANGE[0] else beyond, values['auto_enable'],
-        None if mode is None else str(mode)), layers
+        mode), layers
 
 
 def _sheet(

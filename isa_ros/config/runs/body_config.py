@@ -43,6 +43,8 @@ class Made(NamedTuple):
     """Given by the caller of a simulation."""
     actuators: Sequence[ActuatorConfig]
     """In the same order."""
+    file: str
+    """Name of the run file, for messages."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,8 +156,12 @@ class BodyConfig:
         """
         raise ConfigError(f'{place} is not used: a scenario cannot start {self.called}')
 
-    def refuse_absent(self) -> None:
-        """Raise `ConfigError` if nodes and the command line cannot make the body."""
+    def refuse_absent(self, file: str) -> None:
+        """
+        Raise `ConfigError` if nodes and the command line cannot make the body.
+
+        ``file`` is the name of the run file, for messages.
+        """
 
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return lines that are printed before a run."""

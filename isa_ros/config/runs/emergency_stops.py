@@ -14,12 +14,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import choice_of, Key, NAMES
 from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import FAULTS
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.supply import is_dumped
 
 KEY = 'emergency_stops'
 ALL = 'all'
@@ -77,3 +79,15 @@ def emergency_stops_of(
                                   f'{", ".join(FAULTS)}')
         groups.append(EmergencyStopConfig(name, members, own['reactions'], own['dumps']))
     return tuple(groups)
+
+
+def refuse_without_dump(
+        groups: Sequence[EmergencyStopConfig], supplies: Sequence[SupplyConfig],
+        place: Place) -> None:
+    """Raise `ConfigError` for a group that dumps at once, but whose supplies have no valve."""
+    for own in groups:
+        fed = [supply for supply in supplies if set(supply.feeds) & set(own.actuators)]
+        if own.dumps == AT_ONCE and not any(is_dumped(supply.sheet) for supply in fed):
+            raise ConfigError(
+                f'{place / own.name / "dumps"} = {AT_ONCE} is not used: no dump valve is in '
+                f'{", ".join(supply.name for supply in fed)}')

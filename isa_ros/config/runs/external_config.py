@@ -62,8 +62,10 @@ class ExternalConfig(BodyConfig):
         if maker is not None and not is_path(maker):
             raise ConfigError(
                 f'{place / "class"} = {maker!r}, must be module:factory, as crane:crane')
+        if twice := next((own for own in actuators if actuators.count(own) > 1), None):
+            raise ConfigError(f'{place / "actuators"} has {twice!r} twice, must have it once')
         joints = tuple((parted(own)[1], own) for own in actuators)
-        if len(dict(joints)) < len(joints) and len(set(actuators)) == len(actuators):
+        if len(dict(joints)) < len(joints):
             raise ConfigError(f'{place / "actuators"} = {", ".join(actuators)}: two have the same '
                               'name in their namespaces, which the columns of a body do not have')
         return cls(name=name, joints=joints, maker=maker), {}
@@ -86,24 +88,24 @@ class ExternalConfig(BodyConfig):
         """Return the port of each actuator."""
         return [port_message(actuator, j) for j, (_, actuator) in enumerate(self.joints)]
 
-    def refuse_absent(self) -> None:
+    def refuse_absent(self, file: str) -> None:
         """Refuse a body without ``class``, or whose class cannot be imported."""
         if self.maker is None:
             raise ConfigError(
-                f'{self.label} is external and has no class: only a run in Python can make it, '
+                f'{file}: {self.label} is external and has no class: only a run in Python can make it, '
                 'by simulate(body=...); or give class: module:factory')
-        self._imported()
+        self._imported(file)
 
-    def _imported(self) -> BodyFactory:
+    def _imported(self, file: str) -> BodyFactory:
         assert self.maker is not None
-        return imported_factory(self.maker, f'{self.label}.class')
+        return imported_factory(self.maker, f'{file}: {self.label}.class')
 
     def body(self, made: Made) -> Body:
         """Return what the factory makes, with its ports in its sample; as `BodyConfig.body`."""
         factory = made.factory
         if factory is None:
-            self.refuse_absent()
-            factory = self._imported()
+            self.refuse_absent(made.file)
+            factory = self._imported(made.file)
         mounting = Mounting(
             [joint for joint, _ in self.joints], np.array(made.rows, np.int64),
             np.array([own.initial_position for own in made.actuators]),

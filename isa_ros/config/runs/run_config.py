@@ -16,7 +16,8 @@ from isa_ros.config.runs.body_kinds import BODY_KINDS
 from isa_ros.config.runs.controller_config import (
     ControllerConfig, CONTROLLERS, Controllers, Named as NamedControllers)
 from isa_ros.config.runs.emergency_stops import (
-    ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
+    ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS,
+    refuse_without_dump)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.one_robot import one_robot
@@ -323,12 +324,14 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
             step_ns, values[LINK], moved.get(name), is_checked))
         actuators.append(actuator)
         origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
+    stops = emergency_stops_of(
+        values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS)
     if is_checked:
         refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
+        refuse_without_dump(stops, supplies, place / EMERGENCY_STOPS)
     values |= {
         'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
-        EMERGENCY_STOPS: emergency_stops_of(
-            values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS),
+        EMERGENCY_STOPS: stops,
         'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
         'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
     controllers = values.pop(CONTROLLERS)

@@ -163,5 +163,5 @@ def test_what_it_asks_of_another_robot_is_refused():
     class Astray(Controller):
         def step(self, state):
             return {'r2/kfe': Setpoint(0.05)}
-    with pytest.raises(isa_ros.errors.SetpointError, match="'r1/r2/kfe' is not an actuator"):
+    with pytest.raises(isa_ros.errors.RunError, match="t = 0 s: 'r1/r2/kfe' is not an actua"):
         isa_ros.load(legs()).simulation({'r1/astray': Astray()}).step()

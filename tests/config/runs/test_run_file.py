@@ -71,6 +71,7 @@ def test_of_an_inline_sheet_only_the_name_of_the_model_is_used(tmp_path: Path) -
     ({'actuators.ram.initial_position': -0.1}, 'initial_position = -0.1 m, must be >= 0 m'),
     ({'actuators.ram.load': {'kind': 'mass'}}, 'actuators.ram.load lacks inertia, force'),
     ({'actuators.ram.model': 5}, 'actuators.ram.model = 5, must be of type str'),
+    ({'actuators.ram.mode': None}, 'actuators.ram.mode = None, must be of type str'),
     ({'link': {'kynd': 'can'}}, 'inline.yaml: link.kynd is unknown; did you mean kind?'),
     ({'actuators.ram.link': {'los': 0.1}}, 'actuators.ram.link.los is unknown; did you mean loss'),
     ({'actuators.ram.parameters': None}, 'actuators.ram.parameters = None, must be a section'),
@@ -183,8 +184,8 @@ def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Pa
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
     ('model: isa_v5, load: {kind: mass}, parameters: {plant: {friction: {viscous: 9e5}}}',
-     'rig.yaml: actuators.ram: plant.mechanics.inertia = 0.6, must be >= 6.64; or '
-     'plant.friction.viscous = 900000, must be <= 5.89e+04, for the plant step of 20 us'),
+     'rig.yaml: actuators.ram: plant.mechanics.inertia = 0.6 kg, must be >= 6.64 kg; or '
+     'plant.friction.viscous = 900000 Ns/m, must be <= 5.89e+04 Ns/m, for the plant step of 20 us'),
     ('model: isa_v5, load: {kind: mass}, parameters: {reu: {current: {rate_hz: 30000}}}',
      'rig.yaml: actuators.ram: current.rate_hz = 30000 Hz, its period must be whole nanosec'),
 ])
