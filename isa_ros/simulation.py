@@ -16,14 +16,14 @@ import warnings
 
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.config.runs.body_config import BodyFactory
-from isa_ros.controller import (
-    by_name, Controller, fill_requests, only_of, only_rows, refuse_without_effort, Setpoint)
+from isa_ros.controller import by_name, Controller, only_of, only_rows, Setpoint
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
+from isa_ros.requests import fill_requests, refuse_without_effort
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.tick.calling import CallingTransport
 from isa_ros.tick.emergency_stop import emergency_stops_of

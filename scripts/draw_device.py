@@ -10,9 +10,10 @@ from pathlib import Path
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.config.runs.default_actuator import default_actuator
-from isa_ros.controller import fill_command, Setpoint
+from isa_ros.controller import Setpoint
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import COMMAND
+from isa_ros.requests import fill_command
 from isa_ros.reu.transitions import TRANSITIONS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown

@@ -1,8 +1,9 @@
 """Setpoints of several actuators as arrays: the same commands as by name, refused alike."""
 
-from isa_ros.controller import fill_requests, Setpoint, Setpoints
+from isa_ros.controller import Setpoint, Setpoints
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import SetpointError
+from isa_ros.requests import fill_requests
 import numpy as np
 import pytest
 

@@ -163,13 +163,13 @@ def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterat
 
 
 def _values(sheet: object) -> Iterator[tuple[_Knob, float, str]]:
-    """Yield the knobs that a sheet has, their values and units."""
+    """Yield the knobs that a sheet has, their values and units; '' for a property."""
     for knob in _KNOBS:
         part, name = knob.name.split('.')
         own: Any = getattr(sheet, part, None)
         value = getattr(own, name, 0.0)
         if value > 0.0:
-            unit = next(f.metadata['unit'] for f in fields(own) if f.name == name)
+            unit = {f.name: f.metadata.get('unit', '') for f in fields(own)}.get(name, '')
             yield knob, value, of_coordinate(unit, _is_rotary(sheet))
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.controller import (
-    by_name, Controller, fill_requests, merge_requests, only_rows, State)
+from isa_ros.controller import by_name, Controller, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, RunError, SetpointError
+from isa_ros.requests import fill_requests, merge_requests
 from isa_ros.surroundings.callers import failures_of
 from isa_ros.tick.exchange import IDLE_S, Rows, Transport
 import numpy as np

@@ -11,9 +11,9 @@ at t = 0.
 from collections.abc import Callable, Sequence
 
 from isa_ros.actuator.setpoint_range import RequestRange
-from isa_ros.controller import merge_requests
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
+from isa_ros.requests import merge_requests
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
 from isa_ros.tick.exchange import Rows, RowSink, Transport

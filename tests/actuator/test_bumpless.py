@@ -2,9 +2,10 @@
 
 from itertools import permutations
 
-from isa_ros.controller import fill_command, Setpoint
+from isa_ros.controller import Setpoint
 from isa_ros.core.device import DISABLED, IMPEDANCE, MODES, QUICK_STOP
 from isa_ros.core.signals import COMMAND
+from isa_ros.requests import fill_command
 from isa_ros.reu.wiring import possible_modes
 import numpy as np
 import pytest

@@ -1,10 +1,11 @@
 """A run that is saved in any state of its devices goes on byte for byte."""
 
-from isa_ros.controller import fill_command, Setpoint
+from isa_ros.controller import Setpoint
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import (
     DISABLED, ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP)
 from isa_ros.core.signals import COMMAND
+from isa_ros.requests import fill_command
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator

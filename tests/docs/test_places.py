@@ -6,8 +6,8 @@ import re
 import textwrap
 
 import isa_ros
-from isa_ros.controller import fill_command
 from isa_ros.core.signals import Records
+from isa_ros.requests import fill_command
 from isa_ros.tick.exchange import Rows, RowSink
 from isa_ros.tick.source import ScheduledSource
 import pytest

@@ -5,9 +5,10 @@ import random
 from typing import Any
 
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
-from isa_ros.controller import fill_requests, Setpoint
+from isa_ros.controller import Setpoint
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, SPOOL
 from isa_ros.core.signals import COMMAND, EVERY_KIND, SAMPLE
+from isa_ros.requests import fill_requests
 from msg_adapters.setpoint import applied_to_command, msg_to_command
 import numpy as np
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy

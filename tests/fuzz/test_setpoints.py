@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros import controller
+from isa_ros import requests
 from msg_adapters import setpoint
 import pytest
 from tests.fuzz.property import Broken
@@ -32,7 +32,7 @@ class Accepting:
 
 @pytest.mark.parametrize('plant', [
     lambda patch: patch.setattr(setpoint, '_check', lambda *arguments: None),
-    lambda patch: patch.setattr(controller, 'math', Accepting())])
+    lambda patch: patch.setattr(requests, 'math', Accepting())])
 def test_a_guard_that_is_missing_is_found(plant, monkeypatch):
     plant(monkeypatch)
     with pytest.raises(Broken):

@@ -8,7 +8,7 @@ from typing import Any
 from unittest.mock import patch
 
 from isa_ros.actuator.rows import memory_of
-from isa_ros.controller import Controller, merge_requests, Setpoint, State
+from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, LOAD_REPLY, SAMPLE,
@@ -18,6 +18,7 @@ from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
 from isa_ros.nodes.lockstep.expected import Expected, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
+from isa_ros.requests import merge_requests
 from isa_ros.run.wire.answers import AnswerKind, encode_answer, FIRST
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.roster import Roster

@@ -185,7 +185,8 @@ def test_a_class_that_is_none_is_refused(files: Path, maker: str, message: str) 
 
 
 @pytest.mark.parametrize(('maker', 'message'), [
-    ('no_such_crane:it', "spring.yaml: body.class = no_such_crane:it: No module named 'no_such_crane'"),
+    ('no_such_crane:it',
+     "spring.yaml: body.class = no_such_crane:it: No module named 'no_such_crane'"),
     ('math:crane', 'body.class = math:crane: math has no function crane'),
     ('math:pi', 'pi is of type float, must be a function')])
 def test_a_class_that_cannot_be_made_ends_before_the_run(

@@ -33,7 +33,7 @@ def assert_one_line(errors: str, start: str) -> None:
 
 
 @pytest.mark.parametrize(('parameters', 'message'), [
-    ({'model': 5}, 'knee: parameter model = 5, must be a text (one of cylinder, isa_v2, '),
+    ({'model': 5}, 'knee: parameter model = 5, must be a text (one of cylinder, '),
     ({'model': 'isa_v5', 'real_time_factor': 'fast'},
      "knee: parameter real_time_factor = 'fast', must be a number (simulated over host time, "),
     ({'model': 'isa_v5', 'real_time_factor': 2.0, 'ros_time': True},

@@ -64,7 +64,8 @@ def test_numbers_have_one_for_each_actuator() -> None:
     found = numbers_of(['ram', 'arm'], 'position', [1, 2])
     assert found.dtype == np.float64 and found.tolist() == [1.0, 2.0]
     with pytest.raises(ConfigError, match=(
-            r'^position has the shape \(1,\), must have \(2,\): one number for each of ram, arm$')):
+            r'^position has the shape \(1,\), must have \(2,\): one number for each of ram, '
+            'arm$')):
         numbers_of(['ram', 'arm'], 'position', [1.0])
 
 

@@ -170,7 +170,8 @@ def test_a_failure_names_the_controller_and_its_method(call, words):
     (fails, r"^Mine\.step at t = 0\.003 s: KeyError: 'step' \(test_calling\.py:"),
     ({'rom': Setpoint(0.1)}, r"^Mine\.step at t = 0\.003 s: 'rom' is not an actuator"),
     (3, r'^Mine\.step at t = 0\.003 s: 3 are no setpoints'),
-    ({'kfe': Setpoint(float('nan'))}, r'^Mine\.step at t = 0\.003 s: kfe: setpoint position = nan')])
+    ({'kfe': Setpoint(float('nan'))},
+     r'^Mine\.step at t = 0\.003 s: kfe: setpoint position = nan')])
 def test_a_step_that_fails_or_returns_no_setpoints_names_its_time(wanted, words):
     """Of the second controller, which has no name in a run file: that of its class."""
     own, of_run = joined(Mine([], 'a'), Mine([], 'b', wanted), called=['first'])

@@ -92,8 +92,8 @@ class ExternalConfig(BodyConfig):
         """Refuse a body without ``class``, or whose class cannot be imported."""
         if self.maker is None:
             raise ConfigError(
-                f'{file}: {self.label} is external and has no class: only a run in Python can make it, '
-                'by simulate(body=...); or give class: module:factory')
+                f'{file}: {self.label} is external and has no class: only a run in Python can '
+                'make it, by simulate(body=...); or give class: module:factory')
         self._imported(file)
 
     def _imported(self, file: str) -> BodyFactory:

@@ -8,7 +8,7 @@ from isa_ros.actuator.actuator import participant_digest, SmartActuator, Timing
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.tunable import changing
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
-from isa_ros.controller import fill_command, Setpoint
+from isa_ros.controller import Setpoint
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
@@ -19,6 +19,7 @@ from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.plant.plant import is_heated
+from isa_ros.requests import fill_command
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows

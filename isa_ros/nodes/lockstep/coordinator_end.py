@@ -5,7 +5,6 @@ import secrets
 import time
 from typing import Any
 
-from isa_ros.controller import merge_requests
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
@@ -14,6 +13,7 @@ from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.nodes.middleware.domain import refuse_other_coordinator
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
+from isa_ros.requests import merge_requests
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, FIRST
 from isa_ros.run.wire.parts import Parts, take_actuator_parts

@@ -9,9 +9,10 @@ are the `COMMAND` rows that it requests.
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
+from isa_ros.controller import by_name, Controller, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.nodes.actuator.node import ActuatorNode
+from isa_ros.requests import fill_requests
 from isa_ros.run.wire.parts import actuator_parts, Parts
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import Step
