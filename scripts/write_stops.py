@@ -1,7 +1,7 @@
 """
 Write the tables of stops in docs/protection.md: every situation, run and measured.
 
-About a minute:
+Two minutes:
 
     python -m scripts.write_stops
 """
@@ -14,6 +14,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 from scripts.measure_leg_stops import LEG_SITUATIONS, LEGS, trunk
+from scripts.measure_robot_stops import robot_table
 from scripts.measure_stops import (
     accelerate, ACCUMULATOR, advance, rig, simulation_of, stop, Stopped)
 from scripts.measure_valve_faults import alone_table, knee_table
@@ -120,7 +121,8 @@ def main() -> None:
     """Write the page."""
     text = PAGE.read_text(encoding='utf-8')
     PAGE.write_text(with_parts(text, {
-        'stops': table(), 'leg stops': leg_table(), 'valve faults': alone_table(),
+        'stops': table(), 'leg stops': leg_table(), 'robot stops': robot_table(),
+        'valve faults': alone_table(),
         'knee faults': knee_table()}), encoding='utf-8')
     print(PAGE)
 

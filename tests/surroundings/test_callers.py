@@ -73,3 +73,5 @@ def test_numbers_have_one_for_each_actuator() -> None:
 def test_the_first_number_that_is_not_finite_is_named(bad: float) -> None:
     with pytest.raises(ConfigError, match=f'^arm: force = {bad}, must be finite$'):
         numbers_of(['ram', 'arm', 'leg'], 'force', [0.0, bad, np.nan])
+    with pytest.raises(ConfigError, match='^ram: force = '):
+        numbers_of(['ram'], 'force', [bad])

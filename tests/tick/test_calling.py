@@ -66,8 +66,15 @@ class Mine(Controller):
         self.asked.append((self.mark, snapshot))
 
 
+class Quiet(Controller):
+    """It asks for nothing."""
+
+    def step(self, state: State) -> Any:
+        return {}
+
+
 class Broken(Mine):
-    """Each of its methods fails."""
+    """All of its methods fail but `step`."""
 
     def start(self, names: Any) -> None:
         raise KeyError('start')
@@ -174,7 +181,7 @@ def test_a_failure_names_the_controller_and_its_method(call, words):
      r'^Mine\.step at t = 0\.003 s: kfe: setpoint position = nan')])
 def test_a_step_that_fails_or_returns_no_setpoints_names_its_time(wanted, words):
     """Of the second controller, which has no name in a run file: that of its class."""
-    own, of_run = joined(Mine([], 'a'), Mine([], 'b', wanted), called=['first'])
+    own, of_run = joined(Quiet(), Mine([], 'b', wanted), called=['first'])
     with pytest.raises(RunError, match=words):
         own.send(3, of_run)
 

@@ -84,6 +84,13 @@ class Failing(Controller):
         return self._found
 
 
+class Absent(Failing):
+    """Ends the program as it is made."""
+
+    def __init__(self) -> None:
+        raise SystemExit(0)
+
+
 class Leaving(Failing):
     """Ends the program."""
 

@@ -149,6 +149,8 @@ def test_refused_as_the_file_is_read(controllers, message):
     ({'class': PULLER, 'force': 2.0, 'actuator': 'hfe', 'farce': 2.0},
      "leg.yaml: controllers.pull: Puller got an unexpected keyword argument 'farce'"),
     ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
+    ({'class': 'tests.config.runs.pullers:Absent'},
+     'leg.yaml: controllers.pull: SystemExit: 0 (pullers.py:'),
     ({'class': 'collections:OrderedDict'}, 'must be a class derived from isa_ros.Controller'),
     ({'class': PULLER, 'force': -1.0, 'actuator': 'hfe'},
      'leg.yaml: controllers.pull: force = -1 N, must be >= 0 N')])
