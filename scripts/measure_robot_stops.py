@@ -16,7 +16,7 @@ ROBOTS: Mapping[str, Mapping[str, Any]] = {
 
 def robot_table() -> list[str]:
     """Return the lines of the table of the trunk's height after an emergency stop of all."""
-    rows = [('stands', 'outputs off after', *(f'after {after:g} s' for after in AFTER))]
+    rows = [('standing robot', 'outputs off after', *(f'after {after:g} s' for after in AFTER))]
     return markdown([*rows, *(_row(name, own) for name, own in ROBOTS.items())])
 
 

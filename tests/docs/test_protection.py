@@ -8,6 +8,7 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.conditions import REACTIONS
 from scripts import write_protection
 from scripts.measure_leg_stops import LEG_SITUATIONS
+from scripts.measure_robot_stops import ROBOTS
 from scripts.measure_valve_faults import ALONE, KNEE
 from scripts.write_stops import situations
 
@@ -48,7 +49,7 @@ def test_every_file_it_names_exists() -> None:
 
 def test_every_situation_of_a_stop_has_its_row() -> None:
     """Else `python -m scripts.write_stops`; how far stops go: tests/actuator/test_stops.py."""
-    names = [one.name for one in situations()] + [*LEG_SITUATIONS, *ALONE]
+    names = [one.name for one in situations()] + [*LEG_SITUATIONS, *ROBOTS, *ALONE]
     assert len(set(names)) == len(names)
     for name in names:
         assert PAGE.count(f'\n| {name} |') == 1, name
