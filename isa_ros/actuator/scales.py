@@ -15,6 +15,7 @@ from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, volumes
 from isa_ros.plant.coil import ClosedLoopCoil
+from isa_ros.plant.drives import Cylinder
 from isa_ros.plant.return_spring import CoilSpring, spring_forces, spring_of
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import ClosedLoopSpool
@@ -58,16 +59,29 @@ def _swept_volume(sheet: ActuatorSheet) -> float:
     return _area(sheet) * sheet.plant.drive.stroke
 
 
+def _bore_area(sheet: ActuatorSheet) -> float:
+    """Return the area of the piston with that of its rods, m2 | m3/rad."""
+    drive = sheet.plant.drive
+    return drive.bore_area if isinstance(drive, Cylinder) else _area(sheet)
+
+
 def _seal_length(sheet: ActuatorSheet) -> float:
     """Return the circumference of the piston in m."""
-    return 2.0 * math.sqrt(math.pi * _area(sheet))
+    return 2.0 * math.sqrt(math.pi * _bore_area(sheet))
+
+
+def _cap_spear(sheet: ActuatorSheet) -> float:
+    """Return a length that is as the mean of the diameters of bore and second rod, or none."""
+    drive = sheet.plant.drive
+    rod = drive.cap_rod_mm / drive.bore_mm if isinstance(drive, Cylinder) else 0.0
+    return _seal_length(sheet) * 0.5 * (1.0 + rod)
 
 
 def _piston_volume(sheet: ActuatorSheet) -> float:
-    """Return the volume of a piston as long as its bore, on a rod of twice the stroke, in m3."""
-    area_a, area_b = sheet.plant.drive.areas
-    return (area_a * 2.0 * math.sqrt(area_a / math.pi)
-            + (area_a - area_b) * 2.0 * sheet.plant.drive.stroke)
+    """Return the volume of a piston as long as its bore, on rods of twice the stroke, in m3."""
+    whole, (area_a, area_b) = _bore_area(sheet), sheet.plant.drive.areas
+    rods = (whole - area_a) + (whole - area_b)
+    return whole * 2.0 * math.sqrt(whole / math.pi) + rods * 2.0 * sheet.plant.drive.stroke
 
 
 def _stall_damping(sheet: ActuatorSheet) -> float:
@@ -223,7 +237,7 @@ def _position_gain(sheet: ActuatorSheet) -> float:
 SCALES: Mapping[str, Callable[[ActuatorSheet], float]] = {
     'piston_area': _piston_area, 'stall_out': _stall_out, 'stall_in': _stall_in, 'stroke': _stroke,
     'swept_volume': _swept_volume, 'seal_length': _seal_length,
-    'piston_volume': _piston_volume,
+    'cap_spear': _cap_spear, 'piston_volume': _piston_volume,
     'stall_damping': _stall_damping,
     'stall_stiffness': _stall_stiffness, 'load_damping': _load_damping,
     'rated_pressure': _rated_pressure,

@@ -83,9 +83,10 @@ def refuse_cushions(
             continue
         total += own.length_mm
         if not rod < own.spear_mm < drive.bore_mm:
+            above = f'> {rod:g} mm, the rod there, and ' if rod > 0.0 else ''
             raise ParameterError(
-                f'plant.{name}.spear_mm = {own.spear_mm:g} mm, must be > {rod:g} mm, the rod '
-                f'there, and < plant.drive.bore_mm = {drive.bore_mm:g} mm')
+                f'plant.{name}.spear_mm = {own.spear_mm:g} mm, must be {above}'
+                f'< plant.drive.bore_mm = {drive.bore_mm:g} mm')
         if own.entry_mm > own.length_mm:
             raise ParameterError(
                 f'plant.{name}.entry_mm = {own.entry_mm:g} mm, must be <= length_mm = '

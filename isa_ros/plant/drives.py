@@ -42,11 +42,17 @@ class Cylinder(Parameters):
                     f'{name} = {rod:g} mm, must be < bore_mm = {self.bore_mm:g} mm')
 
     @property
+    def bore_area(self) -> float:
+        """Return the area of the bore in m2: of the piston with its rods."""
+        bore = self.bore_mm * MILLI
+        return math.pi / 4.0 * bore * bore
+
+    @property
     def areas(self) -> tuple[float, float]:
         """Return (A_A, A_B) in m2."""
         bore, rod, cap_rod = (
             one * MILLI for one in (self.bore_mm, self.rod_mm, self.cap_rod_mm))
-        return (math.pi / 4.0 * bore * bore - math.pi / 4.0 * cap_rod * cap_rod,
+        return (self.bore_area - math.pi / 4.0 * cap_rod * cap_rod,
                 math.pi / 4.0 * (bore * bore - rod * rod))
 
     @property

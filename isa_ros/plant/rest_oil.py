@@ -1,7 +1,7 @@
 """The pressures of an actuator at rest: in its chambers, and in the hoses before them."""
 
 from isa_ros.plant.chambers import hydraulic_force
-from isa_ros.plant.return_spring import vent_pressure
+from isa_ros.plant.return_spring import spring_force, vent_pressure
 from isa_ros.plant.service_lines import rest_lines
 import numpy as np
 
@@ -26,14 +26,13 @@ def rest_pressures(
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
     At null the leaking lands divide the supply pressure; the rest of the force comes in equal
-    parts from both chambers, as far as their pressures stay between return and supply. A spring is
-    taken as retracted.
+    parts from both chambers, as far as their pressures stay between return and supply. The force
+    includes that of a spring.
     """
-    oil, spring = plant.chambers, plant.spring
+    oil = plant.chambers
     p_a, p_b = null_pressures(plant, supply, back)
-    if spring.is_on:
-        held = force + spring.preload + oil.area_b * p_b
-        return min(max(held / oil.area_a, back), supply), p_b
+    if plant.spring.is_on:
+        return min(max((force + oil.area_b * p_b) / oil.area_a, back), supply), p_b
     lacking = force - hydraulic_force(p_a, p_b, oil)
     p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
 
@@ -51,11 +50,16 @@ def rest_pressures(
 def rest_oil(
         plant: np.record, supply: float, back: float, force: float, state: np.record) -> None:
     """
-    Put chambers and hoses of a `PLANT_STATE` at the pressures of rest.
+    Put chambers and hoses of a `PLANT_STATE` at the pressures of rest, where its piston is.
 
-    A hose has the pressure of its chamber, or behind a load-holding valve that of the null.
+    ``force`` is what the actuator holds outside; the oil holds its spring, too. A hose has the
+    pressure of its chamber, or behind a load-holding valve that of the null if it is lower: a
+    higher one would enter the chamber.
     """
+    if plant.spring.is_on:
+        force += spring_force(state.mechanics.position, plant.spring)
     state.chambers.p_a, state.chambers.p_b = rest_pressures(plant, supply, back, force)
     null_a, null_b = null_pressures(plant, supply, back)
-    rest_lines(plant, (null_a if plant.holding_a.kind else state.chambers.p_a,
-                       null_b if plant.holding_b.kind else state.chambers.p_b), state.lines)
+    p_a, p_b = float(state.chambers.p_a), float(state.chambers.p_b)
+    rest_lines(plant, (min(p_a, null_a) if plant.holding_a.kind else p_a,
+                       min(p_b, null_b) if plant.holding_b.kind else p_b), state.lines)

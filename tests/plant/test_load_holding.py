@@ -7,7 +7,9 @@ from isa_ros.errors import ParameterError
 from isa_ros.plant.counterbalance import counterbalance_excess, counterbalance_record
 from isa_ros.plant.load_holding import least_lag, lift_rate, poppet_square
 from isa_ros.plant.pilot_check import pilot_check_excess, pilot_check_record
-from isa_ros.plant.plant import plant_record
+from isa_ros.plant.plant import PLANT_STATE, plant_record
+from isa_ros.plant.rest_oil import null_pressures, rest_oil
+from isa_ros.plant.service_lines import sensed_pressures
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 import numpy as np
 import pytest
@@ -59,6 +61,20 @@ def test_the_lift_follows_with_its_lag(record, excess, line, target):
         rate = lift_rate(lift, excess, 5e6, line, record)
         assert rate == pytest.approx((target - lift) / 5e-3, rel=1e-9, abs=1e-9)
         assert rate == lift_rate.py_func(lift, excess, 5e6, line, record)
+
+
+@pytest.mark.parametrize('force', [-15e3, 0.0, 5e3])
+def test_a_hose_at_rest_is_no_higher_than_its_chamber_behind_the_valve(force):
+    """With a weight that pulls, chamber A is below half of the supply: no oil may enter it."""
+    sheet = actuator_sheet('cylinder').plant
+    own = plant_record(replace(sheet, hoses=HOSES, holding_a=COUNTERBALANCE)).view(np.recarray)[0]
+    at = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
+    at.mechanics.position = 0.1
+    rest_oil(own, 16e6, 0.0, force, at)
+    line_a, line_b = sensed_pressures(at, own)
+    lowest = min(at.chambers.p_a, null_pressures(own, 16e6, 0.0)[0])
+    assert (line_a, line_b) == pytest.approx((lowest, at.chambers.p_b), rel=0.0, abs=1.0)
+    assert bool(lowest < at.chambers.p_a) is (force > 0.0)
 
 
 def test_an_open_valve_has_its_rated_flow_and_a_shut_one_its_leakage():

@@ -9,12 +9,14 @@ from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import return_spring
 from isa_ros.plant.chambers import oil_stiffness
-from isa_ros.plant.plant import plant_record
-from isa_ros.plant.rest_oil import rest_pressures
+from isa_ros.plant.plant import PLANT_STATE, plant_record
+from isa_ros.plant.rest_oil import rest_oil, rest_pressures
 from isa_ros.plant.return_spring import CoilSpring
+from isa_ros.plant.service_lines import sensed_pressures
 import numpy as np
 import pytest
 from tests.actuator.closed_cylinder import ClosedCylinder
+from tests.actuator.hosed_cylinder import HOSES
 from tests.actuator.test_energy import account, CLOSES, remainder
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
@@ -45,9 +47,23 @@ def test_chamber_b_has_the_pressure_of_where_it_is_open(open_to, back, vent):
     force = 3000.0
     p_a, p_b = rest_pressures(own, 14e6, back, force)
     assert p_b == vent
-    assert p_a * AREA - p_b * ROD_SIDE - 800.0 == pytest.approx(force, rel=1e-9, abs=0.0)
+    assert p_a * AREA - p_b * ROD_SIDE == pytest.approx(force, rel=1e-9, abs=0.0)
     assert rest_pressures(own, 14e6, back, 1e6)[0] == 14e6
     assert rest_pressures(own, 14e6, back, -1e6)[0] == back
+
+
+@pytest.mark.parametrize('position', [0.02, 0.1, 0.18])
+def test_at_rest_the_oil_holds_load_and_spring_where_it_starts(position):
+    """M5: A_A P_A = F + F_0 + k s + A_B P_B, so that nothing moves; hoses are as their chamber."""
+    own = plant_record(override(single().plant, 'hoses', HOSES)).view(np.recarray)[0]
+    at = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
+    at.mechanics.position = position
+    rest_oil(own, 14e6, 3e5, 3000.0, at)
+    pushed = at.chambers.p_a * AREA - at.chambers.p_b * ROD_SIDE
+    assert pushed == pytest.approx(3000.0 + 800.0 + 6e3 * position, rel=1e-9, abs=0.0)
+    # a volume of 1e-4 m3 is known to 1e-20 m3, of 1e9 Pa an elastance of 1e13 Pa/m3: 1e-6 Pa
+    assert sensed_pressures(at, own) == pytest.approx(
+        (at.chambers.p_a, at.chambers.p_b), rel=0.0, abs=1.0)
 
 
 def test_what_an_open_chamber_gains_leaves_it_and_its_pressure_follows():

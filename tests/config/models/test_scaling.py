@@ -88,6 +88,36 @@ def test_a_larger_bore_in_the_isa_s_model_has_its_own_ratings() -> None:
     assert replace(force, kp=isa.reu.force.kp, ki=isa.reu.force.ki) == isa.reu.force
 
 
+def two_rods(cap_rod_mm: float, more: str = '') -> ActuatorSheet:
+    """Return the sheet of a cylinder of 63/36 x 400 mm with a second rod."""
+    return sheet_of(own(f"""
+      plant:
+        drive: {{bore_mm: 63.0, rod_mm: 36.0, cap_rod_mm: {cap_rod_mm}, stroke_mm: 400.0,
+                rated_pressure_mpa: 16.0}}
+        valve: {{flow: {{rated_flow_lpm: 20.0, rated_current_ma: 10.0}}}}{more}
+""", 'cylinder'))
+
+
+@pytest.mark.parametrize('cap_rod_mm', [10.0, 36.0, 40.0, 62.0])
+def test_a_second_rod_adds_its_mass_and_leaves_the_piston_its_bore(cap_rod_mm: float) -> None:
+    """Mass as the piston's and both rods' volume: pi/4 (D^3 + 2 L (d^2 + d_2^2))."""
+    one, two = two_rods(0.0).plant, two_rods(cap_rod_mm).plant
+    rod, both = (0.063**3 + 0.8 * (0.036**2 + cap * cap) for cap in (0.0, cap_rod_mm * 1e-3))
+    # a few roundings
+    assert two.mechanics.inertia / one.mechanics.inertia == pytest.approx(
+        both / rod, rel=1e-12, abs=0.0)
+    assert two.oil.cross_port_leakage == one.oil.cross_port_leakage
+
+
+@pytest.mark.parametrize('cap_rod_mm', [0.0, 36.0, 50.0])
+def test_a_spear_of_the_cap_side_fits_between_second_rod_and_bore(cap_rod_mm: float) -> None:
+    cushioned = '\n      reu: {}\n    variants: [cushioned]'
+    plant = two_rods(cap_rod_mm, cushioned).plant
+    assert plant.cushion_a.spear_mm == pytest.approx(
+        0.5 * (63.0 + cap_rod_mm), rel=1e-12, abs=0.0)
+    assert plant.cushion_a.entry_mm == pytest.approx(6.3, rel=1e-12, abs=0.0)
+
+
 def leaves(parameters: Parameters, prefix: str = '') -> Iterator[tuple[str, Any]]:
     """Yield the dotted key and the value of every parameter of a set."""
     for f in fields(parameters):
