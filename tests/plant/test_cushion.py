@@ -12,7 +12,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.plant import cushion
 from isa_ros.plant.chambers import volumes
 from isa_ros.plant.cushion_sheets import SpearCushion, trapped_area
-from isa_ros.plant.plant import plant_record
+from isa_ros.plant.plant import plant_record, PLANT_STATE
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 import numpy as np
 import pytest
@@ -117,6 +117,36 @@ def test_a_check_valve_alone_lets_nothing_out_however_it_is_eased():
     assert cushion.eased_outflow(-60e3, 0.0, 1e-2, 4e14, 0.0, 6e13, own) == 0.0
     assert cushion.eased_outflow(-60e3, 0.0, -1e-2, 4e14, 0.0, 6e13, own) < 0.0
     assert cushion.eased_outflow(60e3, 0.0, 1e-2, 4e14, 0.0, 6e13, own) == 0.0
+
+
+@pytest.mark.parametrize('end', [-1.0, 1.0])
+def test_a_spear_is_in_over_its_length(end):
+    """C30: 20 mm in this model, at both ends; a nanometre on either side of it."""
+    length = (PLANT.cushion_a if end < 0.0 else PLANT.cushion_b).length
+    assert length == pytest.approx(20e-3, rel=1e-12, abs=0.0)
+    for d, found in ((length - 1e-9, end), (length + 1e-9, 0.0)):
+        y = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
+        y.mechanics.position = d if end < 0.0 else float(PLANT.chambers.stroke) - d
+        cushion.divide.py_func(y, PLANT)
+        assert y.cushion.end == found
+
+
+@pytest.mark.parametrize('drop', [-3e6, 3e6], ids=['in', 'out'])
+def test_what_passes_the_spear_is_as_dense_as_where_it_comes_from(drop):
+    """C32: of a piston at rest, the trapped side lacks the mass that left it."""
+    own, oil, d, p = PLANT.cushion_a, PLANT.chambers, 5e-3, 6e6
+    y, rates = (np.zeros(1, cushion.CUSHION_STATE).view(np.recarray)[0] for _ in 'yr')
+    volume = cushion.trapped_volume(d, own)
+    y.p, y.cavity = p + drop, cushion.lack(p + drop, 0.0, volume, oil)
+    _, per_c, more_c = cushion.contents(y.cavity, volume, y.p, oil)
+    more = 0.02     # of the port's side
+    gained, _, _, _ = cushion.pass_spear.py_func(
+        y, d, 0.0, p, 1e13, more, 0.0, oil, own, rates)
+    flow = cushion.eased_outflow(drop, d, 0.0, per_c, 0.0, 1e13, own)
+    mass = flow * (1.0 + (more_c if drop > 0.0 else more))
+    # pressures come back from volumes to 1e-9 of them
+    assert rates.cavity == pytest.approx(mass, rel=1e-6, abs=0.0)
+    assert gained == pytest.approx(mass / (1.0 + more), rel=1e-6, abs=0.0)
 
 
 @given(dp=DROP, d=st.floats(-1e-3, 0.02), v=st.floats(-1.0, 1.0))

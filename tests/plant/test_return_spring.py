@@ -106,6 +106,31 @@ def test_a_free_piston_rings_at_oil_and_spring_together():
     assert float(own.chambers.p_b) == 0.0
 
 
+@pytest.mark.parametrize(('open_to', 'vent'), [('tank', 2e5), ('breather', 0.0)])
+def test_a_thrown_piston_stores_its_energy_in_spring_and_oil_and_sends_that_of_b_away(
+        open_to, vent):
+    """M5, C33, E1, E6: 50 kg at 1 m/s, against 11 kN of spring; the oil of A is sealed in."""
+    cylinder = ClosedCylinder(
+        'cylinder', 0.1, 14e6, free=True, mechanics__inertia=50.0,
+        return_spring=replace(SPRING, stiffness=1e5, open_to=open_to))
+    cylinder.port['return_pressure'] = 2e5
+    own, totals = cylinder.own, cylinder.state.totals
+    own.chambers.p_b, own.mechanics.velocity = vent, 1.0
+    cylinder.move(40)
+    moved = float(own.mechanics.position) - 0.1
+    assert moved > 5e-4
+    # B keeps its pressure, so that what is swept is all that leaves
+    swept = -ROD_SIDE * moved if open_to == 'tank' else 0.0
+    assert float(totals.return_volume) == pytest.approx(-swept, rel=1e-9, abs=0.0)
+    gained = 25.0 * (float(own.mechanics.velocity) ** 2 - 1.0)
+    energies = [float(totals.energies[name]) for name in totals.energies.dtype.names]
+    spring = 800.0 * moved + 0.5e5 * ((0.1 + moved) ** 2 - 0.01)
+    assert spring > 5.0
+    # nothing boils: found within 1e-9 J
+    assert sum(energies) + gained == pytest.approx(
+        -2e5 * float(totals.return_volume), rel=0.0, abs=1e-6)
+
+
 @pytest.mark.parametrize('open_to', ['tank', 'breather'])
 def test_it_extends_by_pressure_and_comes_back_by_its_spring(open_to):
     """Oil swept by B goes to the tank and comes from there, or is air; the account closes."""

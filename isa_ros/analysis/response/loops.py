@@ -17,12 +17,14 @@ from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
+from isa_ros.plant.return_spring import CoilSpring, spring_of
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.wiring import active, Off, VARIABLES
 import numpy as np
 
 FORCE_SHARE = 0.1       # amplitude over rating, as for the paper's force bandwidth
+SPRING_SHARE = 0.5      # at most, over the preload: what alone pulls a single-acting cylinder in
 INNER_SHARE = 0.25      # amplitude over spool travel and current, as in the paper's Table 1
 POSITION_SHARE = 0.01   # amplitude over stroke: within the valve's flow up to tens of Hz
 OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
@@ -130,7 +132,15 @@ def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
         sheet=alone, unit=units[name], inward=inward,
         inward_unit=units[inward.removesuffix('_reference') if inward else 'drive'],
         quantity='position' if name == 'position' else 'effort', per_reference=per_reference,
-        rate_hz=is_on[0][1], amplitude=share * largest, largest=largest)
+        rate_hz=is_on[0][1], amplitude=_least(share * largest, sheet, name), largest=largest)
+
+
+def _least(amplitude: float, sheet: ActuatorSheet, name: str) -> float:
+    """Return an amplitude, of a force no more than what a return spring gives both ways."""
+    spring = spring_of(sheet.plant)
+    if name != 'force' or not isinstance(spring, CoilSpring) or spring.preload == 0.0:
+        return amplitude
+    return min(amplitude, SPRING_SHARE * spring.preload)
 
 
 def _inward(alone: ActuatorSheet, names: list[str], name: str) -> str | None:

@@ -18,6 +18,7 @@ from isa_ros.analysis.tuning.design import (
     DENSE, designed, Gains, LoopAtPlace, plant_of, shares, Wanted)
 from isa_ros.core.parameter import replaced
 from isa_ros.errors import ConfigError, IsaError
+from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.reu.block import Pid
 from isa_ros.reu.schedule import FivePoints
 from isa_ros.text.progress import Progress
@@ -170,7 +171,8 @@ class _Bench:
             block = replace(block, kp=factor * block.kp, ki=factor * block.ki)
         raise NotReached(
             f'{self._rig.config.name}: not reached: no gains around those of the preset '
-            f'(reu.force.kp = {block.kp:.3g} at last) follow the reference without hunting')
+            f'(reu.force.kp = {block.kp:.3g} at last) follow the reference without hunting'
+            + held(self._rig))
 
     def design(self, current: Tuned, wanted: Wanted) -> tuple[Gains, Wanted]:
         """Return gains and what they are for: as wanted, or the next bandwidth that exists."""
@@ -192,6 +194,14 @@ class _Bench:
         raise NotReached(
             f'{self._rig.config.name}: not reached: no gains with a bandwidth of '
             f'{wanted.bandwidth:.3g} to {self._wanted.bandwidth:.3g} Hz leave a gain margin')
+
+
+def held(rig: Rig) -> str:
+    """Return what to do behind a load-holding valve, which opens and shuts with the force."""
+    found = [name for name in ('holding_a', 'holding_b')
+             if not isinstance(getattr(rig.config.sheet.plant, name), NoneHolding)]
+    return '; its poppet opens and shuts: tune with ' + ' '.join(
+        f'--set plant.{name}.stuck_open=1' for name in found) if found else ''
 
 
 def with_block(rig: Rig, block: Pid, share: float) -> Rig:

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 from isa_ros.analysis.response.loops import loop_of, outermost, rating
 from isa_ros.errors import ConfigError
+from isa_ros.plant.return_spring import CoilSpring
 from isa_ros.reu.wiring import active, Off, VARIABLES
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet
+from tests.sheets import actuator_sheet, override
 
 
 @pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5'])
@@ -49,6 +50,18 @@ def test_force_is_excited_by_a_tenth_of_its_rating(model, force, unit):
     """The paper's force bandwidth."""
     loop = loop_of(actuator_sheet(model), 'force')
     assert (loop.amplitude, loop.unit.symbol) == (pytest.approx(force, rel=1e-12), unit)
+
+
+@pytest.mark.parametrize(('preload', 'amplitude'), [
+    (800.0, 400.0), (0.0, 1.0), (1e5, 1.0)], ids=['held', 'no_preload', 'strong'])
+def test_a_single_acting_cylinder_is_excited_by_no_more_than_half_of_its_preload(
+        preload, amplitude):
+    """Without pressure only the spring pulls; without a preload by a tenth of the rating."""
+    sheet = actuator_sheet('cylinder')
+    tenth = loop_of(sheet, 'force').amplitude
+    spring = CoilSpring(preload=preload, stiffness=6e3, open_to='tank')
+    own = override(sheet, 'plant.return_spring', spring)
+    assert loop_of(own, 'force').amplitude == (amplitude if amplitude > 1.0 else tenth)
 
 
 def test_without_an_impedance_the_rating_is_the_hydraulic_stall():

@@ -10,7 +10,8 @@ from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.tuning import tune
 from isa_ros.analysis.tuning.design import Gains
-from isa_ros.analysis.tuning.tune import factors, NODES, schedule_through, STROKES, with_gains
+from isa_ros.analysis.tuning.tune import (
+    factors, held, NODES, schedule_through, STROKES, with_gains)
 from isa_ros.cli import main as cli
 from isa_ros.config.text.yaml_text import dump
 from isa_ros.reu.block import Pid
@@ -78,6 +79,13 @@ def test_what_cannot_be_reached_is_one_line_with_what_can(tmp_path: Path, capsys
     last = capsys.readouterr().out.splitlines()[-1]
     assert last.startswith('not reached: 60 deg and 150 Hz; best ')
     assert last.endswith(' Hz at 50 mm; no file is written') and not out.exists()
+
+
+def test_a_loop_that_hunts_behind_a_load_holding_valve_is_told_how_to_be_tuned():
+    own = rig(Choice(name='rig_counterbalance', loop='force'))
+    assert held(own) == ('; its poppet opens and shuts: tune with '
+                         '--set plant.holding_a.stuck_open=1')
+    assert held(rig(Choice(name='rig_hoses', loop='force'))) == ''
 
 
 @pytest.mark.long
