@@ -20,7 +20,7 @@ from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 import numpy as np
 from numpy.typing import NDArray
 
-FORMAT = 4
+FORMAT = 5
 MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
 TIME_BYTES = 8    # at the begin of a snapshot of an actuator or a leg: t, ns

@@ -257,7 +257,7 @@ class Surroundings:
         answers_at = self.supplies.nbytes
         supplies_end = answers_at + self._ports.answers.nbytes
         values_end = supplies_end + self._values.nbytes
-        circuits_end = values_end + sum(own.state.nbytes for own in self._circuits)
+        circuits_end = values_end + sum(own.saved_size for own in self._circuits)
         sizes, end = [], circuits_end
         for body in self.bodies.values():
             sizes.append(body.saved_size(snapshot[end:]) if isinstance(body, SizedBody)
@@ -273,9 +273,9 @@ class Surroundings:
             snapshot, SUPPLY_REPLY, len(self._ports.answers), answers_at, 'supply ports')
         of_circuits, at = [], values_end
         for own in self._circuits:
-            of_circuits.append(snapshot[at:at + own.state.nbytes])
+            of_circuits.append(snapshot[at:at + own.saved_size])
             own.refuse_snapshot(of_circuits[-1])
-            at += own.state.nbytes
+            at += own.saved_size
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()

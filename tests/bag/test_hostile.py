@@ -237,11 +237,11 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
 
 @pytest.mark.parametrize('state, expected', [
     ('[' * 200_000, 'is no saved state'),
-    ('{"format": 4}', 'is damaged'),
-    (sealed({'format': 4}), 'is no saved state'),
+    ('{"format": 5}', 'is damaged'),
+    (sealed({'format': 5}), 'is no saved state'),
     ('x' * (16 * MEBIBYTE + 1), 'larger than 16777216 bytes'),
-    (sealed({'format': 4, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
-    (json.dumps({'format': 4, 'configuration.sha256': 'x'}), 'is damaged, its sha256 is not'),
+    (sealed({'format': 5, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
+    (json.dumps({'format': 5, 'configuration.sha256': 'x'}), 'is damaged, its sha256 is not'),
 ])
 def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     assert expected in refused('replay', with_configuration(tmp_path / 'bag', RIG, state=state))
@@ -259,7 +259,7 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):
     run = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml')
-    state = {'format': 4, 'configuration.sha256': run.digest, 'versions': {}, 'tick': 0,
+    state = {'format': 5, 'configuration.sha256': run.digest, 'versions': {}, 'tick': 0,
              'load': surroundings_of(run).snapshot().hex(), 'requests': '00' * COMMAND.itemsize,
              'stops': '00' * 8, 'participants': ['00']} | change
     assert expected in refused('replay', with_configuration(

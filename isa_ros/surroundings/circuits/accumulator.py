@@ -3,7 +3,8 @@ An accumulator: gas behind a bladder or piston, with a temperature of its own.
 
 Its pressure is that of the manifold it stands on. Heat flows through its wall with one time
 constant, so that slow changes are isothermal and fast ones adiabatic; there is no polytropic
-exponent. Below its precharge it is empty of oil. Equation C46.
+exponent. Below its precharge it is empty of oil. Gas escapes to the atmosphere at its temperature:
+the oil stays, and the pressure falls with the gas. Equation C46.
 
 Neglected: friction and mass of bladder or piston, the neck's resistance (a line between has
 one), the heat of the wall itself, and what nitrogen differs from an ideal gas.
@@ -40,13 +41,16 @@ class AccumulatorPart(Parameters):
     thermal_time_constant_s: float = parameter(
         'of the heat of the gas through its wall, at constant volume', 's', absent=15.0,
         source='assumed, a few litres', ge=0.05, le=1e4)
-    gas_lost: float = fault('share of the gas that has escaped', '1', ge=0.0, le=1.0)
+    gas_lost: float = fault(
+        'share of the gas above the atmosphere that has escaped; it does not come back in a run',
+        '1', ge=0.0, le=1.0)
 
 
 def gas_fields(sheet: AccumulatorPart) -> tuple[float, ...]:
     """Return the fields of the `GAS` of an accumulator."""
     v_0, theta = sheet.gas_volume_l * LITRE, sheet.celsius + ICE
-    amount = (sheet.precharge_mpa * MPA + ATMOSPHERE) * v_0 / theta * (1.0 - sheet.gas_lost)
+    left = sheet.precharge_mpa * MPA * (1.0 - sheet.gas_lost) + ATMOSPHERE
+    amount = left * v_0 / theta
     return v_0, amount, theta, sheet.thermal_time_constant_s, KAPPA
 
 

@@ -3,24 +3,18 @@ A circuit over a run, with a port at each manifold that feeds actuators.
 
 Actuators move the pressure of their manifold in their own tick by what it is said to be
 (`isa_ros.surroundings.supply_port`), and use the return pressure of the tick's start; the circuit
-then advances over the same interval with the mean flows. At t = 0 pressure lines are at the least
-of what pumps, relief and unloading valves hold, the return side is at the tank's pressure.
-Equation E12.
+then advances over the same interval with the mean flows. Equation E12.
 """
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from isa_ros.core.timebase import PLANT_STEP
-from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError, ParameterError, RunError
-from isa_ros.surroundings.circuits.network import (
-    circuit_advance, circuit_rates, OF_ORIFICE, PER_ELEMENT, PER_NODE)
-from isa_ros.surroundings.circuits.nodes import (
-    node_capacity, node_content, node_energy, node_pressure)
-from isa_ros.surroundings.circuits.orifice import UnloadingPart
-from isa_ros.surroundings.circuits.plan import Network, network_of, OUTSIDE
-from isa_ros.surroundings.circuits.relief import ReliefPart
+from isa_ros.surroundings.circuits.network import circuit_advance, circuit_rates
+from isa_ros.surroundings.circuits.nodes import node_capacity, node_energy, node_pressure
+from isa_ros.surroundings.circuits.plan import Network, network_of
+from isa_ros.surroundings.circuits.rest import at_rest, of_return
 from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
@@ -69,14 +63,14 @@ class Circuit:
         self._shown = self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE)))
         places = list(sheet.by_name)
         self._rows = [1 + places.index(own.place) for own in fed]
-        self.state: NDArray[np.float64] = _at_rest(sheet, network)
+        self.state: NDArray[np.float64] = at_rest(sheet, network)
         self._network, self._steps = network, 0
         self._work = np.zeros((5, len(self.state)))
         self._rates = np.zeros(len(self.state))
         self._held = np.zeros(len(network.nodes))
         self._none = np.zeros(len(network.nodes))
         self._stored = np.zeros(len(self._first))
-        self._is_return = _of_return(sheet, network)
+        self._is_return = of_return(sheet, network)
         self._take(sheet)
         self._show()
         self._stored[:] = self.samples['stored_energy']
@@ -84,6 +78,8 @@ class Circuit:
 
     def _take(self, sheet: CircuitSupply) -> None:
         network, self._steps = self._checked(sheet)
+        amounts = network.nodes['gas']['amount']
+        np.minimum(amounts, self._network.nodes['gas']['amount'], out=amounts)
         self._network = network
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
 
@@ -118,23 +114,16 @@ class Circuit:
 
     def change(self, sheet: CircuitSupply) -> None:
         """
-        Continue with other values of the sheet: pressures, flows and openings keep theirs.
+        Continue with other values of the sheet: contents, flows and openings keep theirs.
 
-        What an accumulator no longer holds, or holds more, counts as leaked, with its energy.
-        Raises as the class.
+        Gas that has escaped stays away, with what it and its pressure had stored; it counts as
+        lost. The tank is paid for its oil at the pressure that it had. Raises as the class.
         """
-        before = [(node_energy(*own), node_pressure(*own)) for own in self._all_nodes()]
-        self._take(sheet)
         n = len(self._network.nodes)
-        for k, (energy, pressure) in enumerate(before):
-            node = self._network.nodes[k]
-            if node.is_held or not node.gas.v_0:
-                continue
-            content = float(node_content(pressure, self.state[n + k], node))
-            self.state[OUTSIDE] += self.state[k] - content
-            self.state[k] = content
-            self.state[3 * n + k] += node_energy(content, self.state[n + k], node) - energy
-        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        before = [(node_energy(*own), own[2].p_held) for own in self._all_nodes()]
+        self._take(sheet)
+        for k, (own, (energy, p_held)) in enumerate(zip(self._all_nodes(), before)):
+            self.state[3 * n + k] += node_energy(*own) - energy + (p_held - own[2].p_held) * own[0]
         self._show()
 
     def fill(self, rows: np.ndarray) -> None:
@@ -217,6 +206,11 @@ class Circuit:
         show(self._first, self.state, self._rates, network.nodes, network.elements,
              self._is_return, self._stored, self._shown)
 
+    @property
+    def saved_size(self) -> int:
+        """Return the bytes of a `snapshot`: the state, and what is left of the gas of each node."""
+        return self.state.nbytes + self._network.nodes['gas']['amount'].nbytes
+
     def snapshot(self) -> bytes:
         """
         Return the state beside the samples; `restore` continues from both.
@@ -229,50 +223,20 @@ class Circuit:
         """
         if not np.isfinite(self.state).all():
             raise RunError(f'{self._name}: its state is not finite, cannot be saved')
-        return self.state.tobytes()
+        amounts = self._network.nodes['gas']['amount']
+        return self.state.tobytes() + amounts.tobytes()
 
     def refuse_snapshot(self, snapshot: bytes) -> None:
         """Refuse bytes that are not a `snapshot` of this circuit; raises `ConfigError`."""
-        if len(snapshot) != self.state.nbytes or not np.isfinite(np.frombuffer(snapshot)).all():
+        if len(snapshot) != self.saved_size or not np.isfinite(np.frombuffer(snapshot)).all():
             raise ConfigError(f'{self._name}: saved state is not one of this circuit')
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`, whose sheet and samples are in force."""
-        self.state[:] = np.frombuffer(snapshot)
+        values = np.frombuffer(snapshot)
+        self.state[:] = values[:len(self.state)]
+        self._network.nodes['gas']['amount'] = values[len(self.state):]
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
         samples = self.samples.copy()
         self._show()
         self.samples[:] = samples
-
-
-def _at_rest(sheet: CircuitSupply, network: Network) -> NDArray[np.float64]:
-    """Return the state of a circuit at t = 0."""
-    n, m = len(network.nodes), len(network.elements)
-    state = np.zeros(PER_NODE * n + PER_ELEMENT * m)
-    low = sheet.with_return() | {sheet.tank}
-    tank = sheet.return_pressure_mpa * MPA
-    high = min([sheet.pressure_mpa * MPA, *(
-        part.opens_mpa * MPA + tank * isinstance(part, ReliefPart)
-        for part in sheet.by_name.values() if isinstance(part, ReliefPart | UnloadingPart))])
-    for k, place in enumerate(network.places):
-        node = network.nodes[k]
-        if node['is_held']:
-            continue
-        part = sheet.between.get(place)
-        ends = {place} if part is None else {part.inlet, part.outlet}
-        pressure = tank if ends <= low else high
-        state[n + k] = node['gas']['theta_a']
-        state[k] = node_content(pressure, state[n + k], node)
-    for j, element in enumerate(network.elements):
-        if element['law'] == OF_ORIFICE:
-            state[PER_NODE * n + j] = element['orifice']['target']
-    return state
-
-
-def _of_return(sheet: CircuitSupply, network: Network) -> NDArray[np.int64]:
-    """Return of each element whether it is of the return side, (m,)."""
-    low = sheet.with_return()
-    between = sheet.between
-    return np.array([
-        int(owner in low or owner in between and between[owner].inlet in low)
-        for owner in network.owners], np.int64)

@@ -136,9 +136,8 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, samples):
         elif row.kind == OF_GAS:
             node, theta = nodes[row.inlet], state[n + row.inlet]
             sample.relief_energy = -state[3 * n + row.inlet]
-            if node.gas.amount > 0.0:
-                sample.stored_energy = gas_energy(
-                    gas_volume(sample.pressure, theta, node), theta, node.gas)
+            sample.stored_energy = gas_energy(
+                gas_volume(sample.pressure, theta, node), theta, node.gas)
     whole = samples[0]
     whole.stored_energy = stored_in(state, nodes, elements)
     for k in range(len(rows)):
@@ -159,8 +158,9 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, samples):
         else:
             whole.relief_energy += state[own + m + j]
     for i in range(n):
-        whole.relief_energy -= state[3 * n + i]
         if nodes[i].is_held > 0.0:
-            whole.return_energy += nodes[i].p_held * state[i]
+            whole.return_energy += nodes[i].p_held * state[i] + state[3 * n + i]
+        else:
+            whole.relief_energy -= state[3 * n + i]
     if rows[0].last > 0:
         whole.dump_opening = state[own + rows[0].first]

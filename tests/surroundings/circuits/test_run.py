@@ -61,7 +61,8 @@ def test_actuators_have_the_pressures_of_their_manifolds(result: Result) -> None
     """And the account of the whole closes, through all faults."""
     assert result['station/press.pressure'][0] == pytest.approx(
         result['station/tool.pressure'][0], rel=1e-12)
-    assert result['station/press.pressure'][80] < result['station/tool.pressure'][80]
+    # before the tool's accumulator loses gas
+    assert result['station/press.pressure'][59] < result['station/tool.pressure'][59]
     account = result.accounts['station']
     out = [account[f'{name} (J)'] for name in (
         'hydraulic energy', 'relief', 'return', 'stored')]
