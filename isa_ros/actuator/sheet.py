@@ -9,7 +9,7 @@ from isa_ros.actuator.ratings import (
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.block_valve import NoneBlock, time_to_open, WHEN_OFF
 from isa_ros.plant.chambers import oil_stiffness
@@ -17,9 +17,10 @@ from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.cushion_sheets import refuse_cushions
 from isa_ros.plant.hose import soft_volume
+from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.plant import (
     LinearPlant, MotorPlant, Plant, plant_record, RotaryPlant)
-from isa_ros.plant.return_spring import CoilSpring, spring_of
+from isa_ros.plant.return_spring import CoilSpring, refuse_spring, spring_of
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool, ResponseSpool
 from isa_ros.plant.stated_curves import SidesFlow
 from isa_ros.plant.valve_sheets import DataSheetValve
@@ -69,7 +70,8 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         A spool block without a spool sensor, a loop that would be closed twice or not at
         all, a limit beyond the spool's stop, or an error of `refuse_nonsense`.
     ParameterError
-        A sensor's delay that the converters cannot have, or a cushion that does not fit.
+        A sensor's delay that the converters cannot have, or a cushion or a return spring that
+        does not fit.
 
     """
     reu, plant = sheet.reu, sheet.plant
@@ -95,7 +97,10 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     _refuse_hysteresis_of_pilot(plant)
     _refuse_beside_stated_valve(sheet)
     _refuse_limit_beyond_stop(sheet)
+    _refuse_holding_beside_spring(plant)
     if isinstance(plant, LinearPlant):
+        refuse_spring(plant.return_spring, plant.drive.areas[0],
+                      plant.drive.rated_pressure_mpa * MPA, plant.drive.stroke)
         refuse_cushions(
             plant.drive, plant.cushion_a, plant.cushion_b, plant.oil.dead_volume_ml)
     if sheet.is_endless and isinstance(reu.force, FeedbackLinearisation):
@@ -112,6 +117,18 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
                 raise ConfigError(
                     f'reu.protection.{key} = block: there are no block valves; set '
                     'plant.block_valve.kind: poppet, or the reaction disable')
+
+
+def _refuse_holding_beside_spring(plant: Plant) -> None:
+    """Refuse a load-holding valve without a pilot, or without a load."""
+    if not isinstance(spring_of(plant), CoilSpring):
+        return
+    for name in ('holding_a', 'holding_b'):
+        if not isinstance(getattr(plant, name), NoneHolding):
+            raise ConfigError(
+                f'plant.{name} and plant.return_spring.kind = coil: the valve does not feed line '
+                'B, so that it opens none in A, and in B there is nothing to hold; set '
+                f'plant.{name}.kind: none')
 
 
 def _refuse_hysteresis_of_pilot(plant: Plant) -> None:

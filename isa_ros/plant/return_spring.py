@@ -13,6 +13,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import FASTEST_RATE
+from isa_ros.errors import ParameterError
 import numpy as np
 
 TANK = 'tank'
@@ -65,6 +66,23 @@ def spring_forces(sheet: Spring, stroke: float) -> tuple[float, float]:
     if isinstance(sheet, NoneSpring):
         return 0.0, 0.0
     return sheet.preload, sheet.preload + sheet.stiffness * stroke
+
+
+def refuse_spring(sheet: Spring, area_a: float, rated_pressure: float, stroke: float) -> None:
+    """
+    Refuse a spring that the rated pressure (Pa) on the piston (m2) does not push to its end (m).
+
+    Raises
+    ------
+    ParameterError
+        F_0 + k L is not less than A_A P_S.
+
+    """
+    most, held = spring_forces(sheet, stroke)[1], area_a * rated_pressure
+    if most >= held:
+        raise ParameterError(
+            f'plant.return_spring: preload + stiffness * stroke = {most:g} N at the extended end, '
+            f'must be < {held:g} N, plant.drive.rated_pressure_mpa on the piston')
 
 
 @kernel

@@ -9,14 +9,14 @@ from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import return_spring
 from isa_ros.plant.chambers import oil_stiffness
-from isa_ros.plant.plant import PLANT_STATE, plant_record
+from isa_ros.plant.plant import plant_record, PLANT_STATE
 from isa_ros.plant.rest_oil import rest_oil, rest_pressures
 from isa_ros.plant.return_spring import CoilSpring
 from isa_ros.plant.service_lines import sensed_pressures
 import numpy as np
 import pytest
 from tests.actuator.closed_cylinder import ClosedCylinder
-from tests.actuator.hosed_cylinder import HOSES
+from tests.actuator.hosed_cylinder import CHECK, COUNTERBALANCE, HOSES
 from tests.actuator.test_energy import account, CLOSES, remainder
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
@@ -184,6 +184,26 @@ def test_a_linearising_block_is_refused():
     refuse_wiring(sheet)
     with pytest.raises(ConfigError, match='feedback_linearisation and plant.return_spring.kind'):
         refuse_wiring(override(sheet, 'plant.return_spring', SPRING))
+
+
+@pytest.mark.parametrize(('preload', 'stiffness'), [(26000.0, 100.0), (100.0, 1.3e5)])
+def test_a_spring_is_refused_that_rated_pressure_does_not_push_to_the_end(preload, stiffness):
+    """20.7 MPa on 1256.6 mm2 are 26012 N; 0.2 m of stroke."""
+    with pytest.raises(ParameterError, match=(
+            r'return_spring: preload \+ stiffness \* stroke = 26[01][20]0 N at the extended end, '
+            r'must be < 26012.4 N, plant.drive.rated_pressure_mpa on')):
+        refuse_wiring(single(preload=preload, stiffness=stiffness))
+    refuse_wiring(single(preload=0.99 * preload, stiffness=0.99 * stiffness))
+
+
+@pytest.mark.parametrize('name', ['holding_a', 'holding_b'])
+@pytest.mark.parametrize('holding', [CHECK, COUNTERBALANCE], ids=['check', 'counterbalance'])
+def test_a_load_holding_valve_is_refused_whose_pilot_is_not_fed(name, holding):
+    hosed = override(single().plant, 'hoses', HOSES)
+    with pytest.raises(ConfigError, match=(
+            f'plant.{name} and plant.return_spring.kind = coil: .*; set plant.{name}.kind: none')):
+        refuse_wiring(replace(single(), plant=override(hosed, name, holding)))
+    refuse_wiring(replace(single(), plant=hosed))
 
 
 @pytest.mark.parametrize(('name', 'value'), [
