@@ -34,6 +34,17 @@ actuators:
     parameters:
 """
 OWN = '      plant: {drive: {bore_mm: 40.0, rod_mm: 25.0, rated_pressure_mpa: 14.0}}\n'
+MOTOR = """
+      plant:
+        drive:
+          displacement_cc_per_rad: 15.9
+          pressure_mpa: [20.0, 20.0]
+          speed_rpm: [100.0, 1500.0]
+          volumetric_percent: [90.0, 99.2]
+          mechanical_percent: [92.0, 88.0]
+          rated_pressure_mpa: 20.7
+        valve: {flow: {rated_flow_lpm: 40.0, rated_current_ma: 10.0}}
+"""
 CYLINDER = """
       plant:
         drive: {bore_mm: 40.0, rod_mm: 25.0, stroke_mm: 200.0, rated_pressure_mpa: 20.7}
@@ -203,9 +214,10 @@ def test_a_value_of_the_run_file_is_not_scaled() -> None:
 def test_a_model_as_it_is_has_its_values_bit_for_bit(name: str) -> None:
     """Nothing is scaled, and a restated dimension changes nothing."""
     model = actuator_model(name, 'test')
-    assert bool(model.stated) == (name == 'cylinder')
+    stated = {'cylinder': CYLINDER, 'hydraulic_motor': MOTOR}
+    assert bool(model.stated) == (name in stated)
     alone = default_actuator(name, 'ram')
-    run = own('      {}\n' if name != 'cylinder' else CYLINDER, name, 20.7, model.default_load)
+    run = own(stated.get(name, '      {}\n'), name, 20.7, model.default_load)
     assert (sheet_of(run), run.actuators[0].load) == (alone.sheet, alone.load)
     restated = own('      plant: {drive: {bore_mm: 21.5}}\n', supply=20.7)
     assert sheet_of(restated) == default_actuator('isa_v5', 'ram').sheet
