@@ -142,10 +142,19 @@ def _refuse_hysteresis_of_pilot(plant: Plant) -> None:
 
 
 def _refuse_beside_stated_valve(sheet: ActuatorSheet) -> None:
-    """Refuse an inverse of a curve that a data sheet's valve does not have, and two throttles."""
+    """
+    Refuse what a data sheet's valve does not have: an inverse of its curve, and two throttles.
+
+    A leakage at a current beyond its stop is refused here, when it is scaled.
+    """
     valve = sheet.plant.valve
     if not isinstance(valve, DataSheetValve):
         return
+    last, full = valve.leakage.current_ma[-1], valve.flow.currents_ma[-1]
+    if last > full * (1.0 + ROUNDED):
+        raise ConfigError(
+            f'plant.valve.leakage.current_ma[{len(valve.leakage.current_ma) - 1}] = {last:g} mA, '
+            f'must be <= {full:g} mA, the current at the stop of plant.valve.flow')
     if valve.compensated_drop_mpa > 0.0 and not isinstance(sheet.plant.block_valve, NoneBlock):
         raise ConfigError(
             f'plant.valve.compensated_drop_mpa = {valve.compensated_drop_mpa:g} MPa and '

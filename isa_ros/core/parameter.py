@@ -229,8 +229,9 @@ def check(where: str, value: Any, declared: Any) -> None:
     if 'length' in declared:
         least, most = declared['length']
         if not isinstance(value, (list, tuple)) or not least <= len(value) <= most:
+            count = f'{least}' if least == most else f'{least} to {most}'
             raise ParameterError(
-                f'{where} = {value!r}, must be a list of {least} to {most} numbers'
+                f'{where} = {value!r}, must be a list of {count} numbers'
                 f'{after(" in ", unit)}')
         for k, one in enumerate(value):
             _check_number(f'{where}[{k}]', one, declared)

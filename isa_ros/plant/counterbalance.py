@@ -48,6 +48,11 @@ class CounterbalanceHolding(Parameters):
     leaking_lpm: float = load_holding.leaks()
     spring_broken: float = load_holding.broken_spring()
 
+    def __post_init__(self) -> None:
+        """Refuse a poppet that is stuck in two places."""
+        super().__post_init__()
+        load_holding.refuse_stuck_twice(self.stuck_open, self.stuck_shut)
+
 
 def counterbalance_record(sheet: CounterbalanceHolding) -> np.record:
     """Return the `HOLDING` record of a sheet."""

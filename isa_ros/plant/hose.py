@@ -78,8 +78,13 @@ class LumpedHoses(Parameters):
         'of the hose of chamber B to the outside', 'm3/s/Pa', ge=0.0, le=1e-11)
 
     def __post_init__(self) -> None:
-        """Refuse a drop below that of the smooth hose, and a flow without a drop."""
+        """Refuse a wall beyond its hose, a drop below a smooth one's, and a flow without a drop."""
         super().__post_init__()
+        most = self.bore / MILLILITRE
+        if isinstance(self.wall, ExpandingWall) and self.wall.expansion_ml_per_m >= most:
+            raise ParameterError(
+                f'wall.expansion_ml_per_m = {self.wall.expansion_ml_per_m:g} ml/m, must be < '
+                f'{most:.4g} ml/m, what inner_diameter_mm = {self.inner_diameter_mm:g} mm holds')
         if (self.rated_lpm == 0.0) != (self.rated_drop_mpa == 0.0):
             raise ParameterError(
                 f'rated_lpm = {self.rated_lpm:g} l/min and rated_drop_mpa = '

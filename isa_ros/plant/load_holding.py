@@ -17,6 +17,7 @@ from isa_ros.core.parameter import fault, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import LPM
+from isa_ros.errors import ParameterError
 import numpy as np
 
 HOLDING = np.dtype([
@@ -60,6 +61,20 @@ def leaks() -> Any:
 def broken_spring() -> Any:
     """Declare the fault of a spring that is broken."""
     return fault('1: its spring is broken', '1', is_whole=True, ge=0.0, le=1.0)
+
+
+def refuse_stuck_twice(stuck_open: float, stuck_shut: float) -> None:
+    """
+    Refuse a poppet that is stuck open and shut.
+
+    Raises
+    ------
+    ParameterError
+        Both faults are 1.
+
+    """
+    if stuck_open and stuck_shut:
+        raise ParameterError('stuck_open = 1 and stuck_shut = 1, must not both be 1')
 
 
 def no_holding() -> np.record:

@@ -82,6 +82,10 @@ class Motor(Parameters):
         displacement = self.displacement_cc_per_rad * MILLILITRE
         speeds = [one * RPM for one in self.speed_rpm]
         drops = [one * MPA for one in self.pressure_mpa]
+        if max(speeds) < _DIFFERS * min(speeds):
+            raise ParameterError(
+                f'speed_rpm = {list(self.speed_rpm)} rpm, must differ by a factor of '
+                f'{_DIFFERS:g}, to tell Coulomb from viscous friction')
         leakages = [displacement * speed * (1.0 / (PERCENT * share) - 1.0) / drop
                     for speed, share, drop in zip(speeds, self.volumetric_percent, drops)]
         least, most = sorted(leakages)
@@ -90,10 +94,6 @@ class Motor(Parameters):
                 f'volumetric_percent = {list(self.volumetric_percent)} is a leakage of '
                 f'{leakages[0]:.3g} and of {leakages[1]:.3g} m3/s/Pa, must agree within a factor '
                 f'of {_AGREES:g}: a laminar leakage is one number')
-        if max(speeds) < _DIFFERS * min(speeds):
-            raise ParameterError(
-                f'speed_rpm = {list(self.speed_rpm)} rpm, must differ by a factor of '
-                f'{_DIFFERS:g}, to tell Coulomb from viscous friction')
         torques = [displacement * drop * (1.0 - PERCENT * share)
                    for drop, share in zip(drops, self.mechanical_percent)]
         viscous = (torques[1] - torques[0]) / (speeds[1] - speeds[0])

@@ -13,6 +13,8 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
 
+_HALVINGS = 60
+
 
 @dataclass(frozen=True, kw_only=True)
 class PressureGain(Parameters):
@@ -44,6 +46,32 @@ def passed(leak: float, flow: float, root_drops: float) -> float:
     return 2.0 * root_drops * opened * leak / math.sqrt(opened * opened + leak * leak)
 
 
+def gain_of(leak: float, flow: float) -> float:
+    """Return the pressure gain (%) of a land that leaks ``leak`` and opens by ``flow``  (V27)."""
+    square = (1.0 + flow / leak) * (1.0 + flow / leak)
+    return (square - 1.0) / (square + 1.0) / PERCENT
+
+
+def _least_leak(total: float, flow: float, root_drops: float) -> float:
+    """Return the leakage of a land with which both pairs pass ``total`` at ``flow``."""
+    low, high = 0.0, total / root_drops     # l alone passes sqrt(2) l or more of it
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if passed(middle, flow, root_drops) < total:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _allowed(total: float, opened: float, flow: float, root_drops: float, bound: str) -> str:
+    """Return in words which gain lands have that pass ``total`` as far as they are ``opened``."""
+    if total <= 0.0:
+        return ', all of the pilot stage'
+    gain = gain_of(_least_leak(total, opened, root_drops), flow)
+    return f', with which it is {bound} {gain:.3g} %'
+
+
 def refuse_contradiction(
         gain: PressureGain, flow: float, root_drops: float, current_ma: float,
         at: tuple[float, float], beyond: tuple[float, float] | None) -> None:
@@ -57,7 +85,7 @@ def refuse_contradiction(
     Raises
     ------
     ParameterError
-        Names both numbers.
+        Names both numbers, and the gain that the stated leakage allows.
 
     """
     leak = land_leakage_at(gain, flow)
@@ -66,8 +94,10 @@ def refuse_contradiction(
     if needed > at[0]:
         raise ParameterError(
             f'{stated} needs a leakage of at least {needed + tare:.4g} l/min at null, and '
-            f'leakage.total_lpm[0] = {at[1]:g} l/min')
+            f'leakage.total_lpm[0] = {at[1]:g} l/min'
+            + _allowed(at[0], 0.0, flow, root_drops, '>='))
     if beyond is not None and passed(leak, beyond[1], root_drops) < beyond[0]:
         raise ParameterError(
             f'{stated} leaves at most {passed(leak, beyond[1], root_drops) + tare:.4g} l/min to '
-            f'the next point, where leakage.total_lpm[1] = {beyond[0] + tare:g} l/min')
+            f'the next point, where leakage.total_lpm[1] = {beyond[0] + tare:g} l/min'
+            + _allowed(beyond[0], beyond[1], flow, root_drops, '<='))

@@ -114,7 +114,7 @@ class StatedLeakage(Parameters):
     tare_lpm: float = parameter('of it, that of the pilot stage', 'l/min', ge=0.0, le=100.0)
 
     def __post_init__(self) -> None:
-        """Refuse currents that do not rise from 0, and totals below the pilot stage's."""
+        """Refuse currents that do not rise from 0, totals that rise or are below the pilot's."""
         super().__post_init__()
         _refuse_falling('current_ma', self.current_ma, 'mA')
         _refuse_unpaired(self.current_ma, 'total_lpm', self.total_lpm)
@@ -123,6 +123,10 @@ class StatedLeakage(Parameters):
                 raise ParameterError(
                     f'total_lpm[{k}] = {total:g} l/min, must be >= tare_lpm = '
                     f'{self.tare_lpm:g} l/min')
+            if k > 0 and total > self.total_lpm[k - 1]:
+                raise ParameterError(
+                    f'total_lpm[{k}] = {total:g} l/min, must be <= total_lpm[{k - 1}] = '
+                    f'{self.total_lpm[k - 1]:g} l/min: lands leak most at null')
 
 
 def interpolated(x: Sequence[float], y: Sequence[float]) -> Callable[[float], float]:

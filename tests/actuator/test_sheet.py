@@ -34,6 +34,19 @@ def test_a_spool_block_needs_a_spool_sensor():
         refuse_wiring(sheet)
 
 
+def test_a_leakage_is_not_stated_beyond_the_current_at_the_stop():
+    """Of 10 mA; what scaling rounds is within."""
+    sheet = actuator_sheet('cylinder')
+    for last in (80.0, 10.1):
+        leakage = replace(sheet.plant.valve.leakage, current_ma=(0.0, 0.5, last))
+        valve = replace(sheet.plant.valve, leakage=leakage)
+        with pytest.raises(ConfigError, match=(
+                fr'plant.valve.leakage.current_ma\[2\] = {last:g} mA, must be <= 10 mA')):
+            refuse_wiring(changed(sheet, 'plant', 'valve', valve))
+    leakage = replace(sheet.plant.valve.leakage, current_ma=(0.0, 0.5, 10.0 + 1e-12))
+    refuse_wiring(changed(sheet, 'plant', 'valve', replace(sheet.plant.valve, leakage=leakage)))
+
+
 def test_the_spool_s_loop_is_closed_exactly_once():
     """Equation 8 is never put inside another spool loop; without it a spool loop is needed."""
     plain, explicit = actuator_sheet('isa_v5'), actuator_sheet('isa_v5', 'default', 'explicit')

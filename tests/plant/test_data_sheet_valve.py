@@ -130,6 +130,8 @@ def test_points_that_are_no_curve_are_refused(change, message):
 @pytest.mark.parametrize(('change', 'message'), [
     ({'tare_lpm': 0.45}, r'total_lpm\[3\] = 0.4 l/min, must be >= tare_lpm = 0.45 l/min'),
     ({'current_ma': (0.0, 0.3, 0.3, 10.0)}, r'current_ma\[2\] = 0.3 mA, must be > '),
+    ({'total_lpm': (1.1, 0.8, 0.5, 0.6)}, r'total_lpm\[3\] = 0.6 l/min, must be <= total_lpm'
+                                          r'\[2\] = 0.5 l/min'),
     ({'total_lpm': (1.1,)}, 'total_lpm has 1 points, must have 4'),
 ])
 def test_points_that_are_no_leakage_are_refused(change, message):

@@ -182,6 +182,8 @@ def test_warm_oil_is_thinner_and_softer_in_the_hose_too():
      'rated_drop_mpa = 0.1 MPa at rated_lpm = 40 l/min, must be >= 0.217 MPa, that of a smooth'),
     ({'inner_diameter_mm': 0.5}, 'inner_diameter_mm = 0.5 mm, must be >= 1 mm'),
     ({'length_m': 0.0}, 'length_m = 0 m, must be >= 0.05 m'),
+    ({'wall': ExpandingWall(expansion_ml_per_m=79.0, pressure_mpa=20.0)},
+     'wall.expansion_ml_per_m = 79 ml/m, must be < 78.54 ml/m, what inner_diameter_mm = 10 mm'),
     ({'burst_a': 0.5}, 'burst_a = 0.5, must be a whole number')])
 def test_what_contradicts_itself_is_refused_with_both_numbers(values, message):
     with pytest.raises(ParameterError) as refused:

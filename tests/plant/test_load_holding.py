@@ -63,6 +63,12 @@ def test_the_lift_follows_with_its_lag(record, excess, line, target):
         assert rate == lift_rate.py_func(lift, excess, 5e6, line, record)
 
 
+@pytest.mark.parametrize('sheet', [CHECK, COUNTERBALANCE], ids=['check', 'counterbalance'])
+def test_a_poppet_is_not_stuck_in_two_places(sheet):
+    with pytest.raises(ParameterError, match='stuck_open = 1 and stuck_shut = 1, must not both'):
+        replace(sheet, stuck_open=1.0, stuck_shut=1.0)
+
+
 @pytest.mark.parametrize('force', [-15e3, 0.0, 5e3])
 def test_a_hose_at_rest_is_no_higher_than_its_chamber_behind_the_valve(force):
     """With a weight that pulls, chamber A is below half of the supply: no oil may enter it."""

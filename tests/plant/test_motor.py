@@ -134,7 +134,8 @@ REFUSED = [
      r'1500 rpm, must rise'),
     ({'mechanical_percent': (99.5, 88.0)}, r'must rise with the speed, by less than in prop'),
     ({'mechanical_percent': (92.0, 100.0)}, r'mechanical_percent\[1\] = 100 %, must be < 100 %'),
-    ({'speed_rpm': (100.0,)}, r'must be a list of 2 to 2 numbers')]
+    ({'speed_rpm': (100.0,)}, r'must be a list of 2 numbers in rpm'),
+    ({'speed_rpm': (1000.0, 1000.0)}, r'speed_rpm = .* rpm, must differ by a factor of 1.2')]
 
 
 @pytest.mark.parametrize(('values', 'message'), REFUSED)

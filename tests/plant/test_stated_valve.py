@@ -84,6 +84,20 @@ def test_the_stated_pressure_gain_is_the_blocked_pressure(percent, at):
     assert shut_leakage(10.0, 21e6, record) == pytest.approx(0.5, rel=1e-6)
 
 
+@pytest.mark.parametrize('asked', [30.0, 98.5])
+def test_the_gain_that_a_stated_leakage_allows_is_said_and_accepted(asked):
+    """The bound of the refusal, to its three digits: half of the last one beside it."""
+    with pytest.raises(ParameterError) as refused:
+        replace(STRAIGHT, pressure_gain=PressureGain(current_percent=1.0, percent=asked))
+    _, bound, number, _ = str(refused.value).rsplit(' ', 3)
+    inside = {'>=': 1.002, '<=': 0.999}[bound]
+    replace(STRAIGHT, pressure_gain=PressureGain(
+        current_percent=1.0, percent=float(number) * inside))
+    with pytest.raises(ParameterError):
+        replace(STRAIGHT, pressure_gain=PressureGain(
+            current_percent=1.0, percent=float(number) / inside))
+
+
 @pytest.mark.parametrize(('gain', 'message'), [
     ({'percent': 30.0}, r'pressure_gain.percent = 30 % at 0.4 mA needs a leakage of at least '
                         r'2.31 l/min at null, and leakage.total_lpm\[0\] = 1.6 l/min'),
