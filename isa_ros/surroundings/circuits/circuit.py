@@ -12,7 +12,8 @@ from typing import NamedTuple
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError, RunError
 from isa_ros.surroundings.circuits.network import circuit_advance, circuit_rates
-from isa_ros.surroundings.circuits.nodes import node_capacity, node_energy, node_pressure
+from isa_ros.surroundings.circuits.nodes import (
+    gas_volume, node_capacity, node_energy, node_pressure)
 from isa_ros.surroundings.circuits.plan import Network, network_of
 from isa_ros.surroundings.circuits.rest import at_rest, of_return
 from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
@@ -71,6 +72,9 @@ class Circuit:
         self._none = np.zeros(len(network.nodes))
         self._stored = np.zeros(len(self._first))
         self._is_return = of_return(sheet, network)
+        self._oil = np.zeros((2, len(network.nodes)))
+        self._gas = np.array([gas_volume(node_pressure(*own), *own[1:])
+                              for own in self._all_nodes()])
         self._take(sheet)
         self._show()
         self._stored[:] = self.samples['stored_energy']
@@ -180,7 +184,7 @@ class Circuit:
     def _account(
             self, drawn: Sequence[float], paid: Sequence[float],
             returned: Sequence[float]) -> None:
-        """Add oil and energy of the actuators to the samples of their manifold and the whole."""
+        """Add oil of the actuators, and their energy to their manifold and the whole."""
         n = len(self._network.nodes)
         means = self.state[2 * n:3 * n] / self._step
         whole, total = self.samples[0], 0.0
@@ -191,9 +195,11 @@ class Circuit:
             total += energy
             own['power'] = energy / self._step
             own['peak_power'] = max(own['peak_power'], own['power'])
+            self._oil[0, self._nodes[k]] += drawn[k]
+            self._oil[1, back] += returned[k]
+            whole['drawn'] += drawn[k]
+            whole['returned'] += returned[k]
             for sample in (own, whole):
-                sample['drawn'] += drawn[k]
-                sample['returned'] += returned[k]
                 sample['energy'] += energy
                 sample['held_energy'] += energy - given
         whole['power'] = total / self._step
@@ -204,12 +210,12 @@ class Circuit:
         circuit_rates(self.state, self._none, network.nodes, network.elements, self._work[0],
                       self._rates)
         show(self._first, self.state, self._rates, network.nodes, network.elements,
-             self._is_return, self._stored, self._shown)
+             self._is_return, self._stored, self._gas, self._oil, self._shown)
 
     @property
     def saved_size(self) -> int:
-        """Return the bytes of a `snapshot`: the state, and what is left of the gas of each node."""
-        return self.state.nbytes + self._network.nodes['gas']['amount'].nbytes
+        """Return the bytes of a `snapshot`: state, oil of the actuators, gas that is left."""
+        return self.state.nbytes + self._oil.nbytes + self._held.nbytes
 
     def snapshot(self) -> bytes:
         """
@@ -224,7 +230,7 @@ class Circuit:
         if not np.isfinite(self.state).all():
             raise RunError(f'{self._name}: its state is not finite, cannot be saved')
         amounts = self._network.nodes['gas']['amount']
-        return self.state.tobytes() + amounts.tobytes()
+        return self.state.tobytes() + self._oil.tobytes() + amounts.tobytes()
 
     def refuse_snapshot(self, snapshot: bytes) -> None:
         """Refuse bytes that are not a `snapshot` of this circuit; raises `ConfigError`."""
@@ -234,8 +240,10 @@ class Circuit:
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`, whose sheet and samples are in force."""
         values = np.frombuffer(snapshot)
-        self.state[:] = values[:len(self.state)]
-        self._network.nodes['gas']['amount'] = values[len(self.state):]
+        size = len(self.state)
+        self.state[:] = values[:size]
+        self._oil[:] = values[size:size + self._oil.size].reshape(self._oil.shape)
+        self._network.nodes['gas']['amount'] = values[size + self._oil.size:]
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
         samples = self.samples.copy()
         self._show()

@@ -2,9 +2,10 @@
 What a circuit shows of itself: one `SUPPLY_SAMPLE` for the whole and one for each part.
 
 Of a manifold: its pressure, that of where its actuators return their oil, the net flow that the
-rest of the circuit brings, and oil and energy of its actuators. Of what stands between two
-places: both pressures, its flow, the oil that has entered and left it, what it has lost (a pump:
-given) and stores. Equations E10 to E12.
+rest of the circuit brings, and the energy of its actuators. Of what stands between two places:
+both pressures, its flow, what it has lost (a pump: given) and stores. Of all of them the oil that
+has entered and left: what flowed there and back through one connection counts as its difference;
+a leak or a tear is a connection of the manifold that it is at. Equations E10 to E12.
 """
 
 from isa_ros.core.kernel import kernel
@@ -115,33 +116,25 @@ def _show_place(row, state, rates, nodes, elements, sample):
 
 
 @kernel
-def show(rows, state, rates, nodes, elements, is_return, at_rest, samples):
-    """
-    Write the samples of a circuit at the end of a tick; oil and energy of actuators are there.
+def _oil_of_place(node, state, oil, into_gas, elements, sample):
+    """Write the oil that has come to a manifold or the tank, and gone."""
+    m = len(elements)
+    through = len(state) - 2 * m
+    entered, left = oil[1, node] + max(0.0, -into_gas), oil[0, node] + max(0.0, into_gas)
+    for j in range(m):
+        flowed = state[through + j]
+        if elements[j].inlet == node:
+            entered, left = entered + max(0.0, -flowed), left + max(0.0, flowed)
+        elif elements[j].outlet == node:
+            entered, left = entered + max(0.0, flowed), left + max(0.0, -flowed)
+    sample.drawn, sample.returned = entered, left
 
-    ``rates`` are d(state)/dt without what actuators draw, ``is_return`` of each element whether
-    it is of the return side, (m,).
-    """
+
+@kernel
+def _show_whole(row, state, nodes, elements, is_return, whole):
+    """Write flow of the pumps, energy given and lost, and the opening of the first dump valve."""
     n, m = len(nodes), len(elements)
     own = PER_NODE * n
-    for k in range(len(rows)):
-        row, sample = rows[k], samples[k]
-        sample.pressure = node_pressure(state[row.inlet], state[n + row.inlet], nodes[row.inlet])
-        sample.return_pressure = node_pressure(
-            state[row.outlet], state[n + row.outlet], nodes[row.outlet])
-        if row.kind == OF_WAY:
-            _show_way(row, state, nodes, elements, sample)
-        elif row.kind == OF_PLACE:
-            _show_place(row, state, rates, nodes, elements, sample)
-        elif row.kind == OF_GAS:
-            node, theta = nodes[row.inlet], state[n + row.inlet]
-            sample.relief_energy = -state[3 * n + row.inlet]
-            sample.stored_energy = gas_energy(
-                gas_volume(sample.pressure, theta, node), theta, node.gas)
-    whole = samples[0]
-    whole.stored_energy = stored_in(state, nodes, elements)
-    for k in range(len(rows)):
-        samples[k].stored_energy -= at_rest[k]
     whole.pump_flow, whole.pump_energy, whole.relief_energy = 0.0, 0.0, 0.0
     whole.return_energy = 0.0
     for j in range(m):
@@ -162,5 +155,40 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, samples):
             whole.return_energy += nodes[i].p_held * state[i] + state[3 * n + i]
         else:
             whole.relief_energy -= state[3 * n + i]
-    if rows[0].last > 0:
-        whole.dump_opening = state[own + rows[0].first]
+    if row.last > 0:
+        whole.dump_opening = state[own + row.first]
+
+
+@kernel
+def show(rows, state, rates, nodes, elements, is_return, at_rest, gas, oil, samples):
+    """
+    Write the samples of a circuit at the end of a tick; what concerns actuators is there.
+
+    ``rates`` are d(state)/dt without what actuators draw, ``is_return`` of each element whether
+    it is of the return side, (m,), ``gas`` the volumes of gas at t = 0, (n,), ``oil`` what
+    actuators have drawn from each node and returned to it, (2, n).
+    """
+    n = len(nodes)
+    for k in range(len(rows)):
+        row, sample = rows[k], samples[k]
+        sample.pressure = node_pressure(state[row.inlet], state[n + row.inlet], nodes[row.inlet])
+        sample.return_pressure = node_pressure(
+            state[row.outlet], state[n + row.outlet], nodes[row.outlet])
+        if row.kind == OF_WAY:
+            _show_way(row, state, nodes, elements, sample)
+        elif row.kind == OF_PLACE:
+            _show_place(row, state, rates, nodes, elements, sample)
+            i = row.inlet
+            _oil_of_place(i, state, oil, gas[i] - gas_volume(
+                sample.pressure, state[n + i], nodes[i]), elements, sample)
+        elif row.kind == OF_GAS:
+            node, theta = nodes[row.inlet], state[n + row.inlet]
+            sample.relief_energy = -state[3 * n + row.inlet]
+            volume = gas_volume(sample.pressure, theta, node)
+            sample.drawn = max(0.0, gas[row.inlet] - volume)
+            sample.returned = max(0.0, volume - gas[row.inlet])
+            sample.stored_energy = gas_energy(volume, theta, node.gas)
+    samples[0].stored_energy = stored_in(state, nodes, elements)
+    for k in range(len(rows)):
+        samples[k].stored_energy -= at_rest[k]
+    _show_whole(rows[0], state, nodes, elements, is_return, samples[0])

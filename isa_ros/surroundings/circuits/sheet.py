@@ -132,7 +132,14 @@ def refuse_parts(parts: Mapping[str, Part]) -> None:
         if isinstance(part, Between) and part.inlet == part.outlet:
             raise ParameterError(
                 f'parts.{name}.outlet = {part.outlet!r}, must be another one than its inlet')
+        if isinstance(part, PumpPart) and part.outlet in tanks:
+            raise ParameterError(f'parts.{name}.outlet = {part.outlet!r}, must be the manifold '
+                                 f'that it feeds, of {", ".join(manifolds)}')
+        if isinstance(part, ManifoldPart) and part.returns_to == name:
+            raise ParameterError(
+                f'parts.{name}.returns_to = {name!r}, must be another manifold or the tank')
     _refuse_alone(parts, manifolds)
+    _refuse_unfed(parts, manifolds)
 
 
 def _refuse_alone(parts: Mapping[str, Part], manifolds: list[str]) -> None:
@@ -149,3 +156,23 @@ def _refuse_alone(parts: Mapping[str, Part], manifolds: list[str]) -> None:
         if not any(isinstance(part, Between) and name in (part.inlet, part.outlet)
                    for part in parts.values()):
             raise ParameterError(f'parts.{name}: no part leads to this manifold')
+
+
+def _refuse_unfed(parts: Mapping[str, Part], manifolds: list[str]) -> None:
+    """
+    Refuse manifolds that no oil comes to, from the tank or from what actuators return.
+
+    It flows from inlets to outlets; lines, filters and block valves let it through both ways.
+    """
+    found = {*_named(parts, TankPart), *(
+        part.returns_to for part in parts.values() if isinstance(part, ManifoldPart))}
+    ways = [(part.inlet, part.outlet) for part in parts.values() if isinstance(part, Between)]
+    ways += [(part.outlet, part.inlet) for part in parts.values()
+             if isinstance(part, LinePart | FilterPart | BlockPart)]
+    while beyond := {outlet for inlet, outlet in ways if inlet in found} - found:
+        found |= beyond
+    for name in manifolds:
+        if name not in found:
+            raise ParameterError(
+                f'parts.{name}: no part leads oil to this manifold, which begins with it; oil '
+                'flows from inlet to outlet')

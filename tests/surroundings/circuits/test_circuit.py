@@ -127,6 +127,36 @@ def test_it_follows_an_independent_model() -> None:
         assert circuit.pressures[0][0] == pytest.approx(x[0], rel=2e-6)
 
 
+def test_each_part_has_the_oil_that_came_and_went() -> None:
+    """In less out is what a place took to be compressed; what one part gave, the next has got."""
+    text = STATION.replace('length_m: 2.0', 'burst: 0.01, length_m: 2.0').replace(
+        'oil_volume_l: 0.3', 'oil_volume_l: 0.3, leakage_lpm_per_mpa: 0.1')
+    circuit = circuit_of(text, 'left', 'right')
+    n = len(circuit._network.nodes)
+    start, drawn, returned = circuit.state[:n].copy(), 2e-6, 1.5e-6
+    for _ in range(100):
+        circuit.advance_held([drawn, 0.0], [returned, 0.0])
+    rows = dict(zip(sheet_of(text).by_name, circuit.samples[1:]))
+    taken = {place: float(circuit.state[k] - start[k])
+             for k, place in enumerate(circuit._network.places)}
+
+    def oil(part: str) -> tuple[float, float]:
+        return float(rows[part]['drawn']), float(rows[part]['returned'])
+    gave = oil('buffer')[1] - oil('buffer')[0]
+    assert gave > 1e-5 and min(oil('buffer')) == 0.0
+    for place in ('gallery', 'left', 'right', 'drain'):
+        assert oil(place)[0] - oil(place)[1] == pytest.approx(taken[place], abs=1e-15)
+    assert oil('stored')[0] - oil('stored')[1] == pytest.approx(
+        taken['stored'] + gave, abs=1e-15)
+    assert oil('tank')[0] - oil('tank')[1] == pytest.approx(taken['tank'], abs=1e-15)
+    assert oil('left')[0] == oil('hose')[1]
+    # what the actuators drew, and what is outside by leak and tear
+    assert oil('left')[1] == pytest.approx(100 * drawn + float(circuit.state[0]), abs=1e-15)
+    assert circuit.state[0] > 1e-5
+    assert oil('drain')[0] == pytest.approx(100 * returned, abs=1e-15)
+    assert oil('tank')[1] == oil('pump')[0] > 0.0
+
+
 def test_the_energy_closes_with_another_pressure_of_the_tank() -> None:
     """E12: oil that it has is paid at the pressure that it came at; 0 to 2 MPa and back."""
     circuit, rng = circuit_of(STATION, 'left', 'right'), np.random.default_rng(5)

@@ -24,6 +24,13 @@ from tests.surroundings.circuits.test_circuit import STATION
     (SIMPLE + 'a: {kind: accumulator, at: tank, gas_volume_l: 1.0, precharge_mpa: 9.0}\n',
      "parts.a.at = 'tank', must be a manifold;"),
     (SIMPLE.replace('0.5}', '0.5, returns_to: drain}'), "parts.main.returns_to = 'drain'"),
+    (SIMPLE.replace('0.5}', '0.5, returns_to: main}'),
+     "parts.main.returns_to = 'main', must be another manifold or the tank"),
+    (SIMPLE.replace('inlet: tank, outlet: main', 'inlet: main, outlet: tank'),
+     "parts.pump.outlet = 'tank', must be the manifold that it feeds, of main"),
+    (STATION.replace('inlet: gallery, outlet: stored', 'inlet: stored, outlet: gallery'),
+     'parts.stored: no part leads oil to this manifold, which begins with it; oil flows from '
+     'inlet to outlet'),
     (STATION.replace('shuts_mpa: 18.0', 'shuts_mpa: 20.0'),
      'shuts_mpa = 20 MPa, must be < opens_mpa = 19.5 MPa'),
     (SIMPLE.replace('main:', 'return:').replace('outlet: main', 'outlet: return'),
