@@ -1,10 +1,12 @@
 """Hoses and load-holding valves against one ODE by scipy: motion, mass and energy."""
 
 from dataclasses import replace
+import warnings
 
 from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.servo_valve import conductances
 from isa_ros.scripting.run import load
+from isa_ros.tick.trips import TripWarning
 import numpy as np
 import pytest
 from tests.actuator.hosed_cylinder import (
@@ -119,6 +121,20 @@ def test_a_counterbalance_valve_holds_a_burst_hose_unless_it_is_broken(fault, ho
     lost = before - cylinder.chambers[0].mass
     # leakage 2.5e-4 l/min for 0.1 s: 0.4 mm3; 2 l/min of a damaged seat: 3 ml
     assert lost < 1e-8 if holds else lost > 1e-6
+
+
+@pytest.mark.parametrize('force, slowest, fastest', [(20.4e3, 0.0, 3e-4), (20.8e3, 0.01, 0.03)])
+def test_the_setting_of_a_counterbalance_valve_is_measured_back_with_empty_lines(
+        force, slowest, fastest):
+    """10.4 MPa on 1963 mm2 are 20.42 kN; 0.15 MPa of B add 0.2 kN, friction takes up to 0.5."""
+    hoses = 'actuators.boom.parameters.plant.hoses'
+    run = load('rig_counterbalance.yaml').replace({
+        'actuators.boom.load.force': -force, f'{hoses}.burst_a': 1.0, f'{hoses}.burst_b': 1.0})
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', TripWarning)    # the sensors read empty lines
+        found = run.simulate(1.0)
+    sunk = -np.diff(found['boom.position'][[500, -1]])[0] / 0.5
+    assert slowest <= sunk < fastest
 
 
 @pytest.mark.parametrize('fault, enters', [({}, True), ({'stuck_shut': 1.0}, False)], ids=str)

@@ -48,10 +48,13 @@ are those of the spool behind the coil's current. This page is written by
 
     ./isa study servo_valve --out docs
 
-`./isa params rig_servo_valve.yaml` shows the same numbers as fitted. What a measurement has beside
+`./isa params rig_servo_valve.yaml` shows what is fitted of it. What a measurement has beside
 the sheet: a cycle of 50 s widens the loop by the lag of the spool; the ports' oil takes time to
 follow around null; hysteresis lags at 5 % of the current, which costs phase; and the limited speed
-of the spool is found by harmonic balance."""
+of the spool is found by harmonic balance. At 7 MPa the null is 4 % of the current off
+that at the reference supply of 21 MPa: flow is about 4 % low at full current on one side, and at
+the spool's stop on the other; the table counts current from the null. So low a supply of an
+actuator rated at 21 MPa gives the warning `supply_low`."""
 _SHAPES = """Left: flow over current, without load at 7 MPa. Right: load pressure with both ports
 shut, over 10 % of the current; between both branches it moves nearly from stop to stop."""
 
