@@ -8,8 +8,8 @@ from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.recorded_run import recorded_run
 from isa_ros.core.accounts import (
-    Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, PUMP, RELIEF,
-    RETURNED, STORED, SUPPLY_RELIEF, THROTTLING, WORK)
+    Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, HELD, LEAKAGE, MEAN, OIL, PEAK, PUMP, RELIEF,
+    RETURN, RETURNED, STORED, SUPPLY_ENERGY, SUPPLY_RELIEF, THROTTLING, WORK)
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
 from isa_ros.run import diagnostics as run_diagnostics
@@ -17,7 +17,8 @@ from isa_ros.text.table import aligned, digits
 from msg_adapters import diagnostics
 from msg_adapters.cdr import CdrError
 
-PARTS_HEADER = ('part of a circuit', 'oil in, l', 'out, l', 'given, J', 'lost, J', 'stored, J')
+PARTS_HEADER = ('part of a circuit', 'oil in, l', 'out, l', 'given, J', 'lost, J', 'stored, J',
+                'return, J', 'held, J', 'actuators, J')
 HEADER = ('', 'oil, l', 'mean, W', 'peak, W', 'energy, J', 'valve leakage', 'throttling',
           'friction', 'work', 'rest')
 _COLUMNS = (LEAKAGE,), (THROTTLING,), (FRICTION,), (WORK,), (CROSS_PORT, RELIEF, DAMPING, STORED)
@@ -84,10 +85,19 @@ def energy_table(accounts: Accounts) -> list[tuple[str, ...]]:
 
 
 def parts_table(accounts: Accounts) -> list[tuple[str, ...]]:
-    """Return the rows of the parts of circuits, the header first; empty without circuits."""
-    rows = [(name, *(digits(account[entry.key], 3) for entry in (
-        OIL, RETURNED, PUMP, SUPPLY_RELIEF, STORED)))
-        for name, account in accounts.by_name.items() if _is_part(name, accounts)]
+    """
+    Return the rows of circuits and their parts, the header first; empty without circuits.
+
+    Of each, given and held are lost, stored, returned and given to actuators  (E12).
+    """
+    circuits = {name.rpartition('/')[0] for name in accounts.by_name if _is_part(name, accounts)}
+    rows = []
+    for name, account in accounts.by_name.items():
+        if name in circuits or _is_part(name, accounts):
+            oil = ('' if name in circuits else digits(account[entry.key], 3)
+                   for entry in (OIL, RETURNED))
+            rows.append((name, *oil, *(digits(account[entry.key], 3) for entry in (
+                PUMP, SUPPLY_RELIEF, STORED, RETURN, HELD, SUPPLY_ENERGY))))
     return [PARTS_HEADER, *rows] if rows else []
 
 

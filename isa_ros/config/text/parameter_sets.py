@@ -73,6 +73,10 @@ def _by_name(union: Any, section: Section, place: Place) -> Any:
         refuse_bad_name(name, f'{place / name}: the name')
         if isinstance(below, SourcedValue):
             raise ConfigError(f'{below.where} = {below.value!r}, must be a section')
+        if not any(key in below for key in KIND_KEYS):
+            others = [other for other in section if other != name]
+            raise ConfigError(f'{_first_where(below) or place / name} lacks kind, one of '
+                              f'{", ".join(members(union))}; {alternatives(name, others)}')
         named[name] = build_one_of(union, below, place / name)
     try:
         return set_by_name(named, union)

@@ -94,8 +94,10 @@ def steps_of(sheet: CircuitSupply, network: Network, step: float, name: str) -> 
         worst = max(decay, swing, own, key=lambda rate: rate.value)
         where = f'parts.{worst.place}'
         by = '' if worst.part == worst.place else f' by {worst.part}'
-        advice = ('reduce its lumps' if isinstance(sheet.by_name[worst.place], LinePart)
-                  else 'enlarge its oil_volume_l')
+        line = sheet.by_name[worst.place]
+        advice = ('enlarge its oil_volume_l' if not isinstance(line, LinePart)
+                  else 'reduce its lumps' if worst.value <= most * line.lumps
+                  else 'enlarge its length_m')
         raise ParameterError(
             f'{name}: {where}: its pressure changes at {worst.value:.3g} 1/s{by}, all of the '
             f'circuit at {fastest:.3g} 1/s, must be <= {most:.3g} 1/s (steps of '

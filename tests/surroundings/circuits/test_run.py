@@ -124,10 +124,16 @@ def test_a_report_has_a_table_of_the_parts(result: Result, tmp_path: Path) -> No
     assert accounts is not None
     assert [row[0] for row in energy_table(accounts)] == ['', 'left', 'right', 'clamp', 'station']
     head, *rows = parts_table(accounts)
-    assert [row[0] for row in rows] == [
-        f'station/{name}' for name in RUN.configuration.supplies[0].sheet.by_name]
+    assert [row[0] for row in rows] == ['station', *(
+        f'station/{name}' for name in RUN.configuration.supplies[0].sheet.by_name)]
     by_name = {row[0]: dict(zip(head, row)) for row in rows}
     pump = result.accounts['station/pump']
     assert float(by_name['station/pump']['given, J']) == pytest.approx(pump['pump (J)'], rel=1e-2)
     assert float(by_name['station/emptied']['lost, J']) > 0.0
-    assert energy_text(tmp_path / 'bag').count('station/') == len(rows)
+    assert energy_text(tmp_path / 'bag').count('station/') == len(rows) - 1
+    whole = by_name['station']
+    given = float(whole['given, J']) + float(whole['held, J'])
+    # rounded to three digits each
+    assert given == pytest.approx(sum(float(whole[key]) for key in (
+        'lost, J', 'stored, J', 'return, J', 'actuators, J')), abs=0.01 * given)
+    assert whole['oil in, l'] == ''
