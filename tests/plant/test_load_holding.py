@@ -71,16 +71,17 @@ def test_a_poppet_is_not_stuck_in_two_places(sheet):
 
 @pytest.mark.parametrize('force', [-15e3, 0.0, 5e3])
 def test_a_hose_at_rest_is_no_higher_than_its_chamber_behind_the_valve(force):
-    """With a weight that pulls, chamber A is below half of the supply: no oil may enter it."""
+    """A weight that pulls has A below half of the supply, one that pushes B: no oil enters."""
     sheet = actuator_sheet('cylinder').plant
-    own = plant_record(replace(sheet, hoses=HOSES, holding_a=COUNTERBALANCE)).view(np.recarray)[0]
+    own = plant_record(replace(
+        sheet, hoses=HOSES, holding_a=COUNTERBALANCE, holding_b=CHECK)).view(np.recarray)[0]
     at = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
     at.mechanics.position = 0.1
     rest_oil(own, 16e6, 0.0, force, at)
-    line_a, line_b = sensed_pressures(at, own)
-    lowest = min(at.chambers.p_a, null_pressures(own, 16e6, 0.0)[0])
-    assert (line_a, line_b) == pytest.approx((lowest, at.chambers.p_b), rel=0.0, abs=1.0)
-    assert bool(lowest < at.chambers.p_a) is (force > 0.0)
+    lowest = np.minimum((at.chambers.p_a, at.chambers.p_b), null_pressures(own, 16e6, 0.0))
+    assert sensed_pressures(at, own) == pytest.approx(tuple(lowest), rel=0.0, abs=1.0)
+    assert bool(lowest[0] < at.chambers.p_a) is (force > 0.0)
+    assert bool(lowest[1] < at.chambers.p_b) is (force <= 0.0)
 
 
 def test_an_open_valve_has_its_rated_flow_and_a_shut_one_its_leakage():
