@@ -37,7 +37,7 @@ def test_the_configuration_must_be_the_same():
     ('load', 'xyz', 'is no saved state of a run'),
     ('load', None, 'is no saved state of a run'),
     ('participants', 3, 'is no saved state of a run'),
-    ('format', 3, 'format 3, must be 4')])
+    ('format', 3, 'format 3, must be 5')])
 def test_a_text_of_other_content_is_refused(key, value, message):
     with pytest.raises(ConfigError, match=message):
         RunState.from_json(sealed(content(STATE) | {key: value}), 'digest', 'file')
