@@ -191,6 +191,12 @@ def test_the_compensator_holds_the_pressure() -> None:
     assert p == pytest.approx(20e6 - 0.5e6 * share, abs=10.0)
 
 
+def test_at_the_start_the_feeding_side_is_at_the_lowest_opening() -> None:
+    """19.5 MPa of the unloading valve, below pump and relief; the return side as the tank."""
+    circuit = circuit_of(STATION, 'left', 'right')
+    assert circuit.pressures == [pytest.approx((19.5e6, 0.2e6), rel=1e-12, abs=1e-3)] * 2
+
+
 def test_the_return_side_has_its_pressure() -> None:
     """6 l/min through 200 l/min/MPa are 0.03 MPa above the tank; the bypass helps from 0.35."""
     circuit = circuit_of(STATION, 'left', 'right')
