@@ -23,6 +23,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.plant.block_valve import NoneBlock
 from isa_ros.plant.channels import longest_delay_ms
 from isa_ros.plant.sensors import sensors_record
+from isa_ros.plant.spool import PilotedSpool
 from isa_ros.reu.block import Pid
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.filters import low_pass_coefficient
@@ -91,10 +92,21 @@ def usable(sheet: ActuatorSheet) -> Mapping[str, Usable]:
     if isinstance(sheet.plant.block_valve, NoneBlock):
         weaker = Usable({'le': float(REACTIONS.index('disable'))}, 'block needs block valves')
         found |= {f'reu.protection.{key}': weaker for key in reactions_of(sheet.reu.protection)}
+    found |= {f'plant.valve.{name}': own for name, own in _of_hysteresis(sheet)}
     period = loop_steps(sheet.reu)['current']
     late = Usable({'le': longest_delay_ms(period)}, 'as many as its delay line has')
     found |= {f'plant.sensors.{name}.delay_ms': late for name in sheet.plant.sensors.channels}
     return found
+
+
+def _of_hysteresis(sheet: ActuatorSheet) -> Iterator[tuple[str, Usable]]:
+    """Yield what hysteresis and threshold of a valve leave each other; a pilot has none."""
+    valve = sheet.plant.valve
+    widest, threshold = valve.hysteresis_percent, valve.threshold_percent
+    between, why = 0.5 * valve.hysteresis_from_percent, 'the threshold is part of the hysteresis'
+    most = 0.0 if isinstance(sheet.plant.spool, PilotedSpool) else threshold + between
+    yield 'hysteresis_percent', Usable({'ge': threshold, 'le': most}, why)
+    yield 'threshold_percent', Usable({'ge': widest - between, 'le': widest}, why)
 
 
 def refuse_timeout(sheet: ActuatorSheet, tick: float) -> None:

@@ -231,7 +231,7 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
             there, scenario='name: x\nfigure: ../../x\n')) as writer:
         writer.write_tick(0, 0, [(0, tick_messages(0)[0][1])])
     before = sorted(tmp_path.rglob('*'))
-    assert 'rotor.position_reference is missing' in refused('report', again)
+    assert "figure = '../../x' is not a figure" in refused('report', again)
     assert sorted(tmp_path.rglob('*')) == before
 
 

@@ -69,7 +69,7 @@ def test_the_end_of_a_key_is_its_unit(model: str) -> None:
                     n += 1
                 elif unit in NOT_SI:
                     assert unit in ('V s/mA', 'V/(mA s)', 'mA/MPa', 'uA/K', 'cc/rad', 'mm2/s',
-                                    'mm/s/mA', '%'), (f.name, unit)
+                                    'mm/s/mA', '%', 'rpm'), (f.name, unit)
     assert n > 100 and len(dict(numbers(sheets[1]))) > 100
 
 

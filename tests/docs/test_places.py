@@ -225,8 +225,8 @@ def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
         "        self._fall = sheet.pressure_mpa * MPA / getattr(sheet, 'lasts_s', math.inf)\n\n"
         '    def change')
     copied.replace(
-        path, '        add_oil(drawn, returned, self._step, self.state)\n',
-        '        add_oil(drawn, returned, self._step, self.state)\n'
+        path, "            self.state['held_energy'] += paid - held\n",
+        "            self.state['held_energy'] += paid - held\n"
         "        self.state['pressure'] -= self._fall * self._step\n")
     copied.replace(path, 'from dataclasses import dataclass\n',
                    'from dataclasses import dataclass\nimport math\n')

@@ -113,5 +113,5 @@ def test_every_value_but_the_gauge_pressures_is_published():
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
         'sample pressure_a', 'sample pressure_b', 'sample power', 'sample age',
-        'sample temperature', 'sample supply_pressure',
+        'sample temperature', 'sample supply_pressure', 'sample cushion_pressure',
         *(f'sample {field}' for field in (*OF_DEVICE, *FIELDS) if field != 'supply_volume')}

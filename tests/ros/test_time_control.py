@@ -5,6 +5,7 @@ import signal
 from typing import Any
 
 from isa_ros.bag.reader import Bag
+from isa_ros.core.saved_state import FORMAT
 from isa_ros.replay.replay import recorded_events, replay
 import pytest
 from rcl_interfaces.srv import SetParameters
@@ -130,7 +131,7 @@ def test_a_state_of_another_configuration_is_refused(domain, tmp_path):
 @pytest.mark.parametrize(('text', 'message'), [
     ('', 'is no saved state of a run'),
     ('[]', 'is no saved state of a run'),
-    ('{"format": 9}', 'format 9, must be 3')])
+    ('{"format": 9}', f'format 9, must be {FORMAT}')])
 def test_what_is_no_state_is_refused(domain, tmp_path, text, message):
     state = tmp_path / 'state.json'
     state.write_text(text)

@@ -168,4 +168,4 @@ def test_a_load_that_runs_away_ends_the_run() -> None:
     actuators.start()
     with pytest.raises(SimulationDiverged):
         for _ in range(3):
-            actuators.advance([1e300, 0.06], [1e300, 0.0], [0.0, 0.0])
+            actuators.advance([0.06, 0.06], [1e300, 0.0], [0.0, 0.0])

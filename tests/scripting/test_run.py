@@ -237,7 +237,7 @@ def test_a_fault_of_the_link_is_checked_with_the_link_that_is_given():
 
 
 @pytest.mark.parametrize(('faults', 'message'), [
-    ({}, 'rig_linear.yaml: faults[0] lacks t_s'),
+    ({}, 'the given faults: faults[0] lacks t_s'),
     ({'t_s': 0.0, 'set': {'load.force': float('nan')}},
      'faults[0].set.load.force = nan, must be finite'),
     ({'t_s': 0.0, 'set': {'load.force': 1e9}},

@@ -239,6 +239,8 @@ def _standing() -> Iterator[tuple[str, ...]]:
            *(f'after {seconds} s' for seconds in _MOMENTS))
     for name in model_names():
         model = actuator_model(name, 'study')
+        if 'thermal' not in model.variants:
+            continue
         section = model.with_variants(model.with_preset('default', 'study'), ['thermal'], 'study')
         plant = plant_record(build(ActuatorSheet, section, model.place).plant)[0]
         own = plant.thermal
