@@ -196,7 +196,8 @@ def _study(parser: argparse.ArgumentParser) -> None:
         '--values', type=number, nargs='+', metavar='V',
         help='values instead of those of the study, in the unit of its table')
     shared_arguments.json_file(parser)
-    shared_arguments.page_directory(parser, 'studies.md and its figures, or the page of a study with its own rig')
+    shared_arguments.page_directory(
+        parser, 'studies.md and its figures, or the page of a study with its own rig')
 
 
 def _faults(parser: argparse.ArgumentParser) -> None:

@@ -78,7 +78,7 @@ class LumpedHoses(Parameters):
         'of the hose of chamber B to the outside', 'm3/s/Pa', ge=0.0, le=1e-11)
 
     def __post_init__(self) -> None:
-        """Refuse a wall beyond its hose, a drop below a smooth one's, and a flow without a drop."""
+        """Refuse a wall beyond its hose, a drop below a smooth one's, a flow without a drop."""
         super().__post_init__()
         most = self.bore / MILLILITRE
         if isinstance(self.wall, ExpandingWall) and self.wall.expansion_ml_per_m >= most:

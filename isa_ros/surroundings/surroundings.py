@@ -213,7 +213,8 @@ class Surroundings:
         energies = self._ports.take(fed)
         for supply, circuit in zip(self._supplies, self.circuits):
             groups = circuit.groups
-            oil = [summed(drawn, rows) for rows in groups], [summed(returned, rows) for rows in groups]
+            oil = ([summed(drawn, rows) for rows in groups],
+                   [summed(returned, rows) for rows in groups])
             paid = [summed(energies, rows) for rows in groups] if energies else []
             if not isinstance(supply, Circuit):
                 is_paid = supply.has_port and paid

@@ -220,10 +220,9 @@ def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
     copied.replace(
         path, 'SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply\n', _FALLING)
     copied.replace(
-        path, '        self._record, self._line = self._records(sheet)\n\n    def change',
-        '        self._record, self._line = self._records(sheet)\n'
-        "        self._fall = sheet.pressure_mpa * MPA / getattr(sheet, 'lasts_s', math.inf)\n\n"
-        '    def change')
+        path, '        self.has_port = isinstance(',
+        "        self._fall = sheet.pressure_mpa * MPA / getattr(sheet, 'lasts_s', math.inf)\n"
+        '        self.has_port = isinstance(')
     copied.replace(
         path, "            self.state['held_energy'] += paid - held\n",
         "            self.state['held_energy'] += paid - held\n"

@@ -124,7 +124,8 @@ def test_a_controller_and_a_simulation_name_actuators_and_bodies_with_their_robo
 
 
 @pytest.mark.parametrize(('scenario', 'message'), [
-    ({'robots': {'r3': {'file': 'drop'}}}, 'hop.yaml: robots.r3 is not a robot of pair.yaml; valid: r1, r2'),
+    ({'robots': {'r3': {'file': 'drop'}}},
+     'hop.yaml: robots.r3 is not a robot of pair.yaml; valid: r1, r2'),
     ({'robots': {'r1': {'file': 'drop', 'no': 1}}}, 'hop.yaml: robots.r1.no is unknown'),
     ({'robots': {'r1': {'file': 'dorp'}}}, 'hop.yaml: robots.r1.file: dorp: no such file'),
     ({'robots': {'r1': {'file': 'drop'}, 'r2': {'file': 'drop', 'duration_s': 2.0}}},

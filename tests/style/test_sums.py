@@ -15,7 +15,7 @@ EXACT = {
     ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),
     ('run/wire/steps.py', '(record.itemsize for record in roster.bodies.values())'),
     ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))'),
-    ('surroundings/surroundings.py', '(own.state.nbytes for own in self._circuits)')}
+    ('surroundings/surroundings.py', '(own.saved_size for own in self._circuits)')}
 """Sums of integers, or of two numbers."""
 
 

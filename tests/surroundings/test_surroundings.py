@@ -12,8 +12,8 @@ from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
 from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDiverged
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState
-from isa_ros.surroundings.supply import ConstantSupply
 from isa_ros.surroundings.feeding import SupplyCircuit
+from isa_ros.surroundings.supply import ConstantSupply
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 import pytest

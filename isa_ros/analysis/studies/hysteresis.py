@@ -38,8 +38,8 @@ dither of the REU's current block, 250 Hz. This page is written by
 """
 _SEEN = """With an integral in the loop a play makes it hunt, more and slower the lower the gains
 are: the integral must cross the play before anything moves. The threshold decides it; the rest of
-the hysteresis is no dead zone, and costs gain and phase only. A dither beyond half of the threshold
-ends the hunting; it is a ripple of its own."""
+the hysteresis is no dead zone, and costs gain and phase only. A dither beyond half of the
+threshold ends the hunting; it is a ripple of its own."""
 
 
 class Valve(NamedTuple):

@@ -168,7 +168,8 @@ def test_the_first_gains_keep_the_ratio_of_the_block(monkeypatch: pytest.MonkeyP
         return SimpleNamespace(hunts=True, reached=())
     monkeypatch.setattr(tune._Bench, 'measured', hunting)
     bench = tune._Bench.__new__(tune._Bench)
-    bench._rig = SimpleNamespace(config=SimpleNamespace(name='isa_v5'))
+    bench._rig = SimpleNamespace(
+        config=SimpleNamespace(name='isa_v5', sheet=actuator_sheet('isa_v5')))
     with pytest.raises(tune.NotReached):
         bench.start(block)
     assert [ki / kp for kp, ki in tried] == pytest.approx(
