@@ -9,16 +9,16 @@ higher its pressure is; a check valve lets oil in past it. Signs and what is neg
 from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
-from isa_ros.plant import load_holding
-from isa_ros.plant.load_holding import conductance, COUNTERBALANCE, HOLDING, LEAKAGE_DROP
+from isa_ros.plant.load_holding import (
+    conductance, COUNTERBALANCE, HOLDING, LEAKAGE_DROP, PoppetFaults)
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class CounterbalanceHolding(Parameters):
+class CounterbalanceHolding(PoppetFaults):
     """A relief valve with a pilot, and a check valve past it."""
 
     pilot_ratio: float = parameter('of pilot over relief area', '1', ge=0.0, le=50.0)
@@ -43,15 +43,6 @@ class CounterbalanceHolding(Parameters):
     spring_chamber: str = choice(
         "line: the line's back pressure shuts it with relief and pilot area; vented: it does "
         'not act', 'line', 'vented', absent='line', source='assumed, three ports')
-    stuck_open: float = load_holding.is_stuck_open()
-    stuck_shut: float = load_holding.is_stuck_shut()
-    leaking_lpm: float = load_holding.leaks()
-    spring_broken: float = load_holding.broken_spring()
-
-    def __post_init__(self) -> None:
-        """Refuse a poppet that is stuck in two places."""
-        super().__post_init__()
-        load_holding.refuse_stuck_twice(self.stuck_open, self.stuck_shut)
 
 
 def counterbalance_record(sheet: CounterbalanceHolding) -> np.record:

@@ -10,7 +10,6 @@ forces, hysteresis, the volume of the pilot line, and the oil that a moving popp
 
 from dataclasses import dataclass
 import math
-from typing import Any
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, Parameters
@@ -42,39 +41,21 @@ class NoneHolding(Parameters):
     """The hose ends at the chamber."""
 
 
-def is_stuck_open() -> Any:
-    """Declare the fault of a poppet that stays open."""
-    return fault('1: its poppet is stuck open', '1', is_whole=True, ge=0.0, le=1.0)
+@dataclass(frozen=True, kw_only=True)
+class PoppetFaults(Parameters):
+    """What can go wrong with a valve that holds a load."""
 
-
-def is_stuck_shut() -> Any:
-    """Declare the fault of a poppet that stays shut."""
-    return fault('1: its poppet is stuck shut', '1', is_whole=True, ge=0.0, le=1.0)
-
-
-def leaks() -> Any:
-    """Declare the fault of a seat that leaks."""
-    return fault(
+    stuck_open: float = fault('1: its poppet is stuck open', '1', is_whole=True, ge=0.0, le=1.0)
+    stuck_shut: float = fault('1: its poppet is stuck shut', '1', is_whole=True, ge=0.0, le=1.0)
+    leaking_lpm: float = fault(
         'of its damaged seat at 21 MPa, beyond the leakage', 'l/min', ge=0.0, le=100.0)
+    spring_broken: float = fault('1: its spring is broken', '1', is_whole=True, ge=0.0, le=1.0)
 
-
-def broken_spring() -> Any:
-    """Declare the fault of a spring that is broken."""
-    return fault('1: its spring is broken', '1', is_whole=True, ge=0.0, le=1.0)
-
-
-def refuse_stuck_twice(stuck_open: float, stuck_shut: float) -> None:
-    """
-    Refuse a poppet that is stuck open and shut.
-
-    Raises
-    ------
-    ParameterError
-        Both faults are 1.
-
-    """
-    if stuck_open and stuck_shut:
-        raise ParameterError('stuck_open = 1 and stuck_shut = 1, must not both be 1')
+    def __post_init__(self) -> None:
+        """Refuse a poppet that is stuck in two places."""
+        super().__post_init__()
+        if self.stuck_open and self.stuck_shut:
+            raise ParameterError('stuck_open = 1 and stuck_shut = 1, must not both be 1')
 
 
 def no_holding() -> np.record:

@@ -8,16 +8,16 @@ pressure breaks down, the valve shuts, and the load comes down in jerks.
 from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
-from isa_ros.plant import load_holding
-from isa_ros.plant.load_holding import conductance, HOLDING, LEAKAGE_DROP, PILOT_CHECK
+from isa_ros.plant.load_holding import (
+    conductance, HOLDING, LEAKAGE_DROP, PILOT_CHECK, PoppetFaults)
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class PilotCheckHolding(Parameters):
+class PilotCheckHolding(PoppetFaults):
     """A check valve whose poppet a piston lifts."""
 
     pilot_ratio: float = parameter('area of the pilot piston over that of the seat', '1',
@@ -36,15 +36,6 @@ class PilotCheckHolding(Parameters):
     drain: str = choice(
         'line: the pressure of its own line is behind the pilot piston; outside: none is', 'line',
         'outside', absent='line', source='assumed')
-    stuck_open: float = load_holding.is_stuck_open()
-    stuck_shut: float = load_holding.is_stuck_shut()
-    leaking_lpm: float = load_holding.leaks()
-    spring_broken: float = load_holding.broken_spring()
-
-    def __post_init__(self) -> None:
-        """Refuse a poppet that is stuck in two places."""
-        super().__post_init__()
-        load_holding.refuse_stuck_twice(self.stuck_open, self.stuck_shut)
 
 
 def pilot_check_record(sheet: PilotCheckHolding) -> np.record:
