@@ -2,7 +2,8 @@
 One chunk of an MCAP file while it is written: message records in a buffer, filled by a kernel.
 
 The official ``mcap.writer.Writer`` creates an object and makes ten small packs for each message;
-here one call writes all messages of a tick.
+here one call writes all messages of a tick. A loop that is compiled itself calls `append` for each
+of its ticks, into the `Room` that it got.
 """
 
 from collections.abc import Sequence
@@ -89,11 +90,30 @@ class Layouts:
 
 
 class _Stretch(NamedTuple):
-    """Consecutive ticks of one layout: their times, ns, and their offsets in the chunk."""
+    """Consecutive ticks of one layout, one behind the other."""
 
     ticks: _Ticks
+    start: int
+    """Offset of the first in the chunk."""
     times: list[int]
-    starts: list[int]
+    """Of each, ns."""
+
+
+class Room(NamedTuple):
+    """
+    Memory for consecutive ticks of one layout, behind what a chunk has so far.
+
+    The records of tick k begin at ``at + k tick_bytes``; `append` writes them.
+    """
+
+    buffer: NDArray[np.uint8]
+    """Memory of the whole chunk."""
+    at: int
+    """Offset of the first tick in it."""
+    tick_bytes: int
+    """Size of the records of a tick."""
+    n_ticks: int
+    """Number of ticks that may be written."""
 
 
 class Chunk:
@@ -125,18 +145,30 @@ class Chunk:
         if not messages:
             return
         packed = Packed.of(messages)
-        ticks = self._layouts.of(packed.layout)
-        self._reserve(ticks.size)
+        self._reserve(self.tick_bytes(packed.layout))
         append(self.buffer, self.size, packed.block, packed.layout, sequence, t_ns)
+        self.count(packed.layout, (t_ns,))
+
+    def tick_bytes(self, layout: Layout) -> int:
+        """Return the size of the records of a tick."""
+        return self._layouts.of(layout).size
+
+    def room(self, layout: Layout, n_ticks: int) -> Room:
+        """Return memory for ticks, which `count` makes a part of the chunk once it is filled."""
+        size = self.tick_bytes(layout)
+        self._reserve(n_ticks * size)
+        return Room(self.buffer, self.size, size, n_ticks)
+
+    def count(self, layout: Layout, times: Sequence[int]) -> None:
+        """Take the ticks that were written behind the last one; ``times`` ns of each, (n,)."""
+        ticks = self._layouts.of(layout)
         if not self._stretches:
-            self.start_ns = t_ns
+            self.start_ns = times[0]
         if not self._stretches or self._stretches[-1].ticks is not ticks:
-            self._stretches.append(_Stretch(ticks, [], []))
-        stretch = self._stretches[-1]
-        stretch.times.append(t_ns)
-        stretch.starts.append(self.size)
-        self.end_ns = t_ns
-        self.size += ticks.size
+            self._stretches.append(_Stretch(ticks, self.size, []))
+        self._stretches[-1].times.extend(times)
+        self.end_ns = times[-1]
+        self.size += len(times) * ticks.size
 
     def data(self) -> memoryview:
         """Return the content of the chunk without a copy."""
@@ -154,7 +186,8 @@ class Chunk:
     def message_indices(self) -> list[tuple[int, Entries]]:
         """Return (channel id, entries (n, 2) of time and offset) of each channel with messages."""
         pieces: dict[int, list[Entries]] = {}
-        for ticks, times, starts in self._stretches:
+        for ticks, start, times in self._stretches:
+            starts = range(start, start + len(times) * ticks.size, ticks.size)
             instants = np.array((times, starts), np.uint64).T
             for channel, offset in zip(ticks.channels, ticks.offsets):
                 pieces.setdefault(channel, []).append(

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.bag.mcap_file import McapFile
-from isa_ros.bag.message_chunk import Chunk
+from isa_ros.bag.message_chunk import Chunk, Room
 from isa_ros.bag.metadata import Counts, NO_START, storage_metadata, TopicEntry
+from isa_ros.bag.packed import Layout
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
 from msg_adapters.definitions import ENCODING
 
@@ -37,6 +38,14 @@ class Head(NamedTuple):
     """Definition text by type name."""
 
 
+class _Stretch(NamedTuple):
+    """Ticks that a caller may write into the chunk by itself."""
+
+    layout: Layout
+    times: range
+    """Time of each, ns."""
+
+
 class PartWriter:
     """
     Writer of the file with this ``number`` in a bag.
@@ -53,6 +62,7 @@ class PartWriter:
         self._start_ns, self._end_ns = NO_START, NO_START
         self._counts = [0] * len(head.topics)
         self._ticks = 0
+        self._stretch: _Stretch | None = None
         try:
             self._write_head(head)
         except OSError:
@@ -79,11 +89,53 @@ class PartWriter:
         Return the chunk that this tick completed, which must be passed to `write_chunk` before
         the next one is complete.
         """
+        self._stretch = None
         if messages:
             self._chunk.add(t_ns, sequence, messages)
             self._ticks += 1
         elif not self._ticks:
             return None
+        return self._completed(t_ns)
+
+    def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
+        """
+        Return room for ticks of ``layout``, at ``t_ns`` and then every ``step_ns``.
+
+        The last one that it has room for completes the chunk, unless `close_stretch` takes fewer.
+        """
+        chunk = self._chunk
+        size = chunk.tick_bytes(layout)
+        end_ns = CHUNK_NS + (t_ns if chunk.is_empty else chunk.start_ns)
+        room = chunk.room(layout, max(1, min(
+            CHUNK_TICKS - self._ticks, -((chunk.size - CHUNK_BYTES) // size),
+            1 - (t_ns - end_ns) // step_ns)))
+        self._stretch = _Stretch(layout, range(t_ns, t_ns + room.n_ticks * step_ns, step_ns))
+        return room
+
+    def close_stretch(self, n_ticks: int) -> Chunk | None:
+        """
+        Take the first ticks of the open stretch, whose records the caller has written.
+
+        Returns as `write_tick`.
+
+        Raises
+        ------
+        ValueError
+            No stretch is open, or it has no room for so many ticks.
+
+        """
+        stretch, self._stretch = self._stretch, None
+        room = 0 if stretch is None else len(stretch.times)
+        if not 0 <= n_ticks <= room:
+            raise ValueError(f'{n_ticks} ticks in a stretch with room for {room}')
+        if stretch is None or not n_ticks:
+            return None
+        self._chunk.count(stretch.layout, stretch.times[:n_ticks])
+        self._ticks += n_ticks
+        return self._completed(stretch.times[n_ticks - 1])
+
+    def _completed(self, t_ns: int) -> Chunk | None:
+        """Return the chunk if the tick of ``t_ns`` ends it."""
         if (self._ticks < CHUNK_TICKS and self._chunk.size < CHUNK_BYTES
                 and t_ns - self._chunk.start_ns < CHUNK_NS):
             return None
@@ -145,4 +197,5 @@ class PartWriter:
     def _take_chunk(self) -> Chunk:
         chunk, self._chunk = self._chunk, self._file.new_chunk()
         self._ticks = 0
+        self._stretch = None
         return chunk

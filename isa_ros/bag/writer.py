@@ -17,8 +17,9 @@ import time
 from types import TracebackType
 
 from isa_ros.bag.directory import make_directory
-from isa_ros.bag.message_chunk import Chunk
+from isa_ros.bag.message_chunk import Chunk, Room
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
+from isa_ros.bag.packed import Layout
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.storage import PLAIN, Storage
@@ -97,18 +98,67 @@ class BagWriter:
         if self._error is not None:
             raise self._error
         try:
-            if self._writing is not None and self._writing.done():
-                self._end_writing()
-            if self._is_full and messages:
-                self._begin_part()
-            chunk = self._parts[-1].write_tick(t_ns, sequence, messages)
-            if chunk is not None:
-                self._end_writing()
-                self._writing = self._thread.submit(self._write, self._parts[-1], chunk)
-                if self._storage.split_bytes is not None:  # the next tick needs the file's size
-                    self._end_writing()
+            self._prepare(begins_part=bool(messages))
+            self._hand_over(self._parts[-1].write_tick(t_ns, sequence, messages))
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
+
+    def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
+        """
+        Return room for consecutive ticks that the caller writes by itself.
+
+        All have the same ``layout``, of one message or more; the first is that of ``t_ns``, the
+        others follow every ``step_ns``. For tick k of them call ``append(room.buffer,
+        room.at + k * room.tick_bytes, block, layout, sequence + k, t_ns + k * step_ns)``, then
+        `close_stretch` with their number. Until then call nothing else of this writer. The room
+        ends with the tick that completes a chunk.
+
+        Raises
+        ------
+        RunError
+            as `write_tick`
+
+        """
+        if self._error is not None:
+            raise self._error
+        try:
+            self._prepare(begins_part=True)
+            return self._parts[-1].open_stretch(layout, t_ns, step_ns)
+        except OSError as error:
+            raise self._failure(error, self._path(len(self._parts) - 1)) from error
+
+    def close_stretch(self, n_ticks: int) -> None:
+        """
+        Record the first ``n_ticks`` that were written since `open_stretch`, possibly none.
+
+        Raises
+        ------
+        RunError
+            as `write_tick`
+        ValueError
+            There was no room for so many ticks.
+
+        """
+        try:
+            self._hand_over(self._parts[-1].close_stretch(n_ticks))
+        except OSError as error:
+            raise self._failure(error, self._path(len(self._parts) - 1)) from error
+
+    def _prepare(self, begins_part: bool) -> None:
+        """Raise the error of a chunk that was written; begin the next file where one is due."""
+        if self._writing is not None and self._writing.done():
+            self._end_writing()
+        if self._is_full and begins_part:
+            self._begin_part()
+
+    def _hand_over(self, chunk: Chunk | None) -> None:
+        """Give a complete chunk to the thread, once it has written the one before."""
+        if chunk is None:
+            return
+        self._end_writing()
+        self._writing = self._thread.submit(self._write, self._parts[-1], chunk)
+        if self._storage.split_bytes is not None:  # the next tick needs the file's size
+            self._end_writing()
 
     def close(self) -> None:
         """
