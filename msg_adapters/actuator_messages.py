@@ -35,11 +35,16 @@ TOPICS = (*APPLIED_TOPICS, DEVICE, *STATE_TOPICS)
 TEMPERATURE = ('temperature', TEMPERATURE_TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
 
+CUSHION_PRESSURE = ('cushion_pressure', PRESSURE_TYPE)
+"""(topic suffix, type) of the pressure behind a spear: of cylinders with cushioned ends."""
 
-def topics(is_heated: bool = False, has_link: bool = False) -> tuple[tuple[str, str], ...]:
+
+def topics(
+        is_heated: bool = False, has_link: bool = False,
+        is_cushioned: bool = False) -> tuple[tuple[str, str], ...]:
     """Return (topic suffix, type) of all messages of an actuator."""
     return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), DEVICE, *STATE_TOPICS,
-            *([TEMPERATURE] if is_heated else []))
+            *([CUSHION_PRESSURE] if is_cushioned else []), *([TEMPERATURE] if is_heated else []))
 
 
 def prepared(

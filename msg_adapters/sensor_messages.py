@@ -22,11 +22,11 @@ def fluid_pressure(frame_id: str, column: int) -> tuple[FluidPressure, Fields]:
     return message, {**STAMP, 'fluid_pressure': column}
 
 
-def oil_temperature(name: str, columns: Mapping[str, int]) -> tuple[Temperature, Fields]:
-    """Return the message of the oil's temperature (celsius); its variance, 0, means unknown."""
+def temperature(frame_id: str, column: int) -> tuple[Temperature, Fields]:
+    """Return a reading in celsius, value number ``column``; its variance, 0, means unknown."""
     message = Temperature()
-    message.header.frame_id = name
-    return message, {**STAMP, 'temperature': columns['temperature']}
+    message.header.frame_id = frame_id
+    return message, {**STAMP, 'temperature': column}
 
 
 def wrench(frame_id: str) -> WrenchStamped:

@@ -119,7 +119,7 @@ SAMPLE_FIELDS = (
     Field('frames_lost_down', '1', 'of the link, to the REU, since t = 0'),
     Field('frames_lost_up', '1', 'likewise, from it'),
     Field('commands_dropped', '1', 'that waited for a frame for the time of the watchdog'),
-    Field('cushion_pressure', 'Pa', 'behind a spear, exact, gauge; 0: none is in; not in bags'),
+    Field('cushion_pressure', 'Pa', 'behind a spear, exact, gauge; 0: none is in'),
 )
 """The values one actuator reports at the end of a tick."""
 SAMPLE = record_type(SAMPLE_FIELDS)

@@ -56,6 +56,12 @@ class SpearCushion(Parameters):
 Cushion = NoneCushion | SpearCushion
 
 
+def is_cushioned(plant: object) -> bool:
+    """Return whether the sheet of a plant has a cushion; only cylinders may have any."""
+    return any(isinstance(getattr(plant, name, None), SpearCushion)
+               for name in ('cushion_a', 'cushion_b'))
+
+
 def trapped_area(sheet: Cushion, bore_mm: float) -> float:
     """Return the area of a piston around its spear or sleeve in m2, 0 without one."""
     if isinstance(sheet, NoneCushion):

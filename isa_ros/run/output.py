@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Messages, Names, Packer
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
@@ -149,8 +150,8 @@ def packer_of(run: RunConfig, rows: PublishedRows) -> Packer:
     """Return the packer of the rows of a run; encoding its messages takes about a millisecond."""
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
-              [(own.name, len(own.published) > 1 if own.published else None)
-               for own in run.sampled_supplies],
+              run.sampled_supplies,
               {body.name: body.messages(run.step_ns) for body in run.bodies},
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
-              run.linked), rows, start_ns=run.start_ns)
+              run.linked, [actuator.name for actuator in run.actuators
+                           if is_cushioned(actuator.sheet.plant)]), rows, start_ns=run.start_ns)

@@ -23,8 +23,9 @@ from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
 from msg_adapters.actuator_messages import (
-    KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
-from msg_adapters.sensor_messages import fluid_pressure, oil_temperature, PRESSURE_TYPE
+    CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
+from msg_adapters.sensor_messages import (
+    fluid_pressure, PRESSURE_TYPE, temperature, TEMPERATURE_TYPE)
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -34,9 +35,10 @@ Messages = Sequence[bytes | None]
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
 _APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
             'reference', 'kinds')
-_PRESSURES = ('pressure_a', 'pressure_b')
-_FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
-_SUPPLY_PRESSURES = ('pressure', 'return_pressure')
+_PRESSURES = ('pressure_a', 'pressure_b', 'cushion_pressure')
+_PRESSURE_A, _PRESSURE_B, _CUSHION = (_SAMPLE.index(name) for name in _PRESSURES)
+_OF_SUPPLY = ('pressure', 'return_pressure', 'gas_temperature')
+_GAS = _SUPPLY.index(_OF_SUPPLY[2])
 
 
 class Names(NamedTuple):
@@ -44,20 +46,24 @@ class Names(NamedTuple):
 
     actuators: Sequence[tuple[str, bool]]
     """(name, is_rotary) of each."""
-    supplies: Sequence[tuple[str, bool | None]] = ()
-    """(name, publishes its return pressure) of each row; None: it publishes no pressure."""
+    supplies: Sequence[tuple[str, Sequence[str]]] = ()
+    """(name, signals that it publishes) of each row."""
     bodies: Mapping[str, Sequence[BodyMessage]] = {}
     """What is published of each body's sample."""
     heated: Collection[str] = ()
     """Names of the actuators whose temperature is published."""
     linked: Collection[str] = ()
     """Names of the actuators with a link."""
+    cushioned: Collection[str] = ()
+    """Names of the actuators with cushioned ends."""
 
 
-def topics_of_actuator(prefix: str, is_heated: bool, has_link: bool = False) -> list[Topic]:
+def topics_of_actuator(
+        prefix: str, is_heated: bool, has_link: bool = False,
+        is_cushioned: bool = False) -> list[Topic]:
     """Return the topics of an actuator below ``prefix`` with their qualities of service."""
     return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
-            for suffix, type_ in topics(is_heated, has_link)]
+            for suffix, type_ in topics(is_heated, has_link, is_cushioned)]
 
 
 @kernel
@@ -77,18 +83,20 @@ def pack(instant, tick_start, gauge_zero, samples, applied, supplies, body, word
         for j in range(samples.shape[1]):
             values[at] = samples[n, j]
             at += 1
-        values[at] = samples[n, _FIRST_PRESSURE] + gauge_zero
-        values[at + 1] = samples[n, _FIRST_PRESSURE + 1] + gauge_zero
+        values[at] = samples[n, _PRESSURE_A] + gauge_zero
+        values[at + 1] = samples[n, _PRESSURE_B] + gauge_zero
+        values[at + 2] = samples[n, _CUSHION] + gauge_zero
         command = applied[n]
-        values[at + 2], values[at + 3] = float(command.is_enabled), command.position
-        values[at + 4], values[at + 5] = command.velocity, command.effort
-        values[at + 6], values[at + 7] = command.stiffness, command.damping
-        values[at + 8], values[at + 9] = float(command.mode), command.reference
-        values[at + 10] = float(command.kinds)
-        at += 11
+        values[at + 3], values[at + 4] = float(command.is_enabled), command.position
+        values[at + 5], values[at + 6] = command.velocity, command.effort
+        values[at + 7], values[at + 8] = command.stiffness, command.damping
+        values[at + 9], values[at + 10] = float(command.mode), command.reference
+        values[at + 11] = float(command.kinds)
+        at += 12
     for m in range(len(supplies)):
         values[at], values[at + 1] = supplies[m, 0] + gauge_zero, supplies[m, 1] + gauge_zero
-        at += 2
+        values[at + 2] = supplies[m, _GAS]
+        at += 3
     for j in range(len(body)):
         values[at] = body[j]
         at += 1
@@ -127,14 +135,12 @@ class Packer:
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
                       for topic in topics_of_actuator(
-                          f'/{name}', name in names.heated, row in self._links.rows)]
-        for supply, shows_return in names.supplies:
-            for k, suffix in enumerate(
-                    () if shows_return is None else _SUPPLY_PRESSURES[:1 + shows_return]):
-                topic = Topic(coordinator_messages.supply_topic(supply, suffix), PRESSURE_TYPE)
-                found.append((topic, fluid_pressure(
-                    coordinator_messages.WORLD_FRAME, at + k)))
-            at += len(_SUPPLY_PRESSURES)
+                          f'/{name}', name in names.heated, row in self._links.rows,
+                          name in names.cushioned)]
+        for supply, published in names.supplies:
+            found += [_of_supply(supply, signal, at + _OF_SUPPLY.index(signal))
+                      for signal in published]
+            at += len(_OF_SUPPLY)
         if names.supplies:
             found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
         of_bodies = [own for messages in names.bodies.values() for own in messages]
@@ -171,11 +177,13 @@ class Packer:
         places = {field: first + k for k, field in enumerate(
             (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
              *(f'applied {field}' for field in _APPLIED)))}
+        absolute = {field: places[f'{field}, absolute'] for field in _PRESSURES}
         messages = actuator_messages.prepared(
-            name, is_rotary, places,
-            {field: places[f'{field}, absolute'] for field in _PRESSURES},
+            name, is_rotary, places, absolute,
             {field: places[f'applied {field}'] for field in _APPLIED})
-        return {**messages, TEMPERATURE[0]: oil_temperature(name, places)}
+        return {**messages,
+                CUSHION_PRESSURE[0]: fluid_pressure(name, absolute['cushion_pressure']),
+                TEMPERATURE[0]: temperature(name, places['temperature'])}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
@@ -252,9 +260,11 @@ class Packer:
             for suffix, kinds in commands[:1 + (row in self._links.rows)]),
             self.rare.get(f'/{name}/{DEVICE}'),
             *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        if name in self._names.cushioned:
+            messages.append(self._message(f'/{name}/{CUSHION_PRESSURE[0]}'))
         if name in self._names.heated:
-            temperature = f'/{name}/{TEMPERATURE[0]}'
-            messages.append(None if temperature in self._not_due else self._message(temperature))
+            topic = f'/{name}/{TEMPERATURE[0]}'
+            messages.append(None if topic in self._not_due else self._message(topic))
         return messages
 
     def has_applied(self, row: int) -> bool:
@@ -274,7 +284,7 @@ class Packer:
     def surroundings(self) -> list[Topic]:
         """Return the topics of supplies and body, and the diagnostics."""
         own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
-               for suffix, _ in topics(is_heated=True, has_link=True)}
+               for suffix, _ in topics(is_heated=True, has_link=True, is_cushioned=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 
@@ -283,7 +293,15 @@ def _n_columns(rows: PublishedRows) -> int:
     """Return the number of values of all rows, without the words of links."""
     body = sum(floats(sample).size for sample in rows.bodies.values())
     own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-    return len(rows.samples) * own + len(rows.supplies) * len(_SUPPLY_PRESSURES) + body
+    return len(rows.samples) * own + len(rows.supplies) * len(_OF_SUPPLY) + body
+
+
+def _of_supply(supply: str, signal: str, column: int) -> tuple[Topic, Prepared]:
+    """Return topic and message of a signal of a supply or a part, value number ``column``."""
+    is_gas = signal == _OF_SUPPLY[2]
+    message = (temperature if is_gas else fluid_pressure)(coordinator_messages.WORLD_FRAME, column)
+    return Topic(coordinator_messages.supply_topic(supply, signal),
+                 TEMPERATURE_TYPE if is_gas else PRESSURE_TYPE), message
 
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]

@@ -19,6 +19,8 @@ from dataclasses import dataclass
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, parameter, Parameters
+from isa_ros.core.record import floats
+from isa_ros.core.signals import Records
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
@@ -71,9 +73,17 @@ SUPPLY_FIELDS = (
     Field('stored_energy', 'J', 'in accumulator and lines, more than at t = 0'),
     Field('held_energy', 'J', 'paid at pressures held over a tick, not given by a line'),
     Field('dump_opening', '1', 'of the dump valve: 0 shut, 1 open'),
+    Field('gas_temperature', 'celsius', 'of an accumulator of a circuit; 0 of all else'),
 )
-"""The state of one supply, which is also its sample at the end of a tick."""
+"""The sample of one supply at the end of a tick."""
 SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
+SUPPLY_STATE = record_type(SUPPLY_FIELDS[:-1])
+"""What a saved state has of it: a circuit has the temperature in its own state."""
+
+
+def saved_states(samples: Records) -> bytes:
+    """Return the `SUPPLY_STATE` of samples, (n,)."""
+    return floats(samples)[:, :len(SUPPLY_STATE.names or ())].tobytes()
 
 
 @kernel

@@ -20,7 +20,7 @@ from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.feeding import (
     index_of, made, n_samples, summed, SupplyCircuit)
-from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE
+from isa_ros.surroundings.supply import saved_states, Supply, SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import SupplyPorts
 import numpy as np
 
@@ -240,7 +240,7 @@ class Surroundings:
             broken = broken_number(self.supplies[k:k + 1])
             if broken is not None:
                 raise RunError(f'{name}: {broken[0]} = {broken[1]}, must be finite to be saved')
-        return b''.join([self.supplies.tobytes(), self._ports.answers.tobytes(),
+        return b''.join([saved_states(self.supplies), self._ports.answers.tobytes(),
                          self._values.snapshot(),
                          *(circuit.snapshot() for circuit in self._circuits),
                          *(body.snapshot() for body in self.bodies.values())])
@@ -255,7 +255,7 @@ class Surroundings:
             The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        answers_at = self.supplies.nbytes
+        answers_at = len(self._owners) * SUPPLY_STATE.itemsize
         supplies_end = answers_at + self._ports.answers.nbytes
         values_end = supplies_end + self._values.nbytes
         circuits_end = values_end + sum(own.saved_size for own in self._circuits)
@@ -268,7 +268,7 @@ class Surroundings:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {end}')
         supplies = np.concatenate([
-            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, name)
+            restored_rows(snapshot, SUPPLY_STATE, 1, k * SUPPLY_STATE.itemsize, name)
             for k, name in enumerate(self._owners)])
         answers = restored_rows(
             snapshot, SUPPLY_REPLY, len(self._ports.answers), answers_at, 'supply ports')
@@ -280,7 +280,8 @@ class Surroundings:
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()
-        self.supplies[:], self._ports.answers[:] = supplies, answers
+        self.supplies[list(SUPPLY_STATE.names or ())] = supplies
+        self._ports.answers[:] = answers
         for own, state in zip(self._circuits, of_circuits):
             own.restore(state)
         at = circuits_end

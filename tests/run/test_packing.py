@@ -29,6 +29,8 @@ LEG = load_run(find('leg.yaml', CONFIG))
 TICK_NS, T_NS = 6_000_000, 7_000_000
 SUFFIXES = ('applied_parameters', 'applied_setpoint', 'device', 'joint_states', 'load_cell',
             'pressure_a', 'pressure_b', 'references', 'valve')
+HELD, MAIN = ('supply', ('pressure',)), ('main', ('pressure', 'return_pressure'))
+"""Names of supplies with what they publish."""
 ATMOSPHERE = 101325.0  # Pa, ISO 2533
 
 
@@ -73,7 +75,7 @@ def rows() -> PublishedRows:
 @pytest.fixture
 def packer(rows: PublishedRows) -> Packer:
     """Return what packs them, on one supply."""
-    return Packer(Names([('hip', True), ('knee', False)], [('supply', False)]), rows)
+    return Packer(Names([('hip', True), ('knee', False)], [HELD]), rows)
 
 
 def test_a_leg_has_every_topic_in_canonical_order():
@@ -113,9 +115,9 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
 
 
 @pytest.mark.parametrize('names', [
-    Names([('knee', False), ('knee', False)], [('supply', False)]),
-    Names([('hip', False), ('knee', False)], [('main', True), ('main_return', False)]),
-    Names([('hip', False), ('coordinator', False)], [('supply', False)],
+    Names([('knee', False), ('knee', False)], [HELD]),
+    Names([('hip', False), ('knee', False)], [MAIN, ('main_return', HELD[1])]),
+    Names([('hip', False), ('coordinator', False)], [HELD],
           {'body': [JointStates('/coordinator/valve', [], [], [], [])]})])
 def test_a_topic_has_one_source(names):
     """The last: of the same name, and even of the same type."""
@@ -201,7 +203,7 @@ def test_only_a_return_line_with_a_volume_shows_its_pressure():
     """A return line that stays at tank pressure has nothing to show."""
     rows = some_rows(2, 2)
     packer = Packer(
-        Names([('hip', True), ('knee', False)], [('held', False), ('main', True)]), rows)
+        Names([('hip', True), ('knee', False)], [('held', HELD[1]), MAIN]), rows)
     packer.pack(T_NS, TICK_NS, {})
     said = everything(packer)
     pressures = {name: decode(data, FluidPressure).fluid_pressure for name, data in said.items()
@@ -234,7 +236,7 @@ def test_a_body_shows_the_floats_of_its_sample():
     """By the columns of its own record type, arrays element by element."""
     messages = [JointStates('/body', ['a', 'b'], ['height', 'angle[1]'], [], [])]
     body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
-    packer = Packer(Names([('hip', True)], [('supply', False)], {'cart': messages}),
+    packer = Packer(Names([('hip', True)], [HELD], {'cart': messages}),
                     some_rows(1)._replace(bodies={'cart': body}))
     body['angle'], body['height'] = (0.25, 0.5), 2.0
     packer.pack(T_NS, TICK_NS, {})
@@ -246,7 +248,7 @@ def test_each_of_several_bodies_shows_its_own_floats():
     names = {name: [JointStates(f'/{name}/joints', ['a'], ['angle[1]'], [], ['load'])]
              for name in ('left', 'right')}
     bodies = {name: np.zeros(1, [('angle', '<f8', (2,)), ('load', '<f8')]) for name in names}
-    packer = Packer(Names([('hip', True)], [('supply', False)], names),
+    packer = Packer(Names([('hip', True)], [HELD], names),
                     some_rows(1)._replace(bodies=bodies))
     for scale in (1.0, 10.0):
         for k, body in enumerate(bodies.values(), start=1):
@@ -318,7 +320,7 @@ def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
     own = rows._replace(applied=rows.applied.view(np.recarray))  # fields by dot in Python too
 
     def packed() -> list[tuple[int, bytes]]:
-        packer = Packer(Names([('hip', True), ('knee', False)], [('supply', True)]), own)
+        packer = Packer(Names([('hip', True), ('knee', False)], [('supply', MAIN[1])]), own)
         packer.pack(T_NS, TICK_NS, {})
         return list(packer.all_messages())
     compiled = packed()

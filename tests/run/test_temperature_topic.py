@@ -25,8 +25,8 @@ def packer() -> Packer:
     samples = np.zeros(2, SAMPLE)
     samples['temperature'] = 40.0, 47.0
     rows = PublishedRows(samples, np.zeros(2, COMMAND), np.zeros(1, SUPPLY_SAMPLE), {})
-    return Packer(Names([('hip', True), ('knee', False)], [('supply', False)], heated=['knee']),
-                  rows)
+    return Packer(
+        Names([('hip', True), ('knee', False)], [('supply', ['pressure'])], heated=['knee']), rows)
 
 
 def messages(packer: Packer) -> dict[str, bytes]:

@@ -13,7 +13,7 @@ from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDive
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState
 from isa_ros.surroundings.feeding import SupplyCircuit
-from isa_ros.surroundings.supply import ConstantSupply
+from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_STATE
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 import pytest
@@ -237,7 +237,7 @@ def test_a_supply_too_small_is_refused_by_its_name():
 def test_a_supply_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig, value: float):
     surroundings, twin = surroundings_of(leg), surroundings_of(leg)
     saved = bytearray(surroundings.snapshot())
-    at = surroundings.supplies.dtype.itemsize   # pressure of the second supply
+    at = SUPPLY_STATE.itemsize      # pressure of the second supply
     saved[at:at + 8] = np.float64(value).tobytes()
     with pytest.raises(ConfigError, match=f'^knee: saved state has pressure = {value}, must be'):
         twin.restore(bytes(saved))

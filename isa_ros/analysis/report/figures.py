@@ -1,4 +1,4 @@
-"""Figures of a run: one for each actuator, one for each leg."""
+"""Figures of a run: one for each leg, each actuator and each circuit."""
 
 from collections.abc import Sequence
 
@@ -6,6 +6,8 @@ from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.body_config import BODY
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.config.runs.supplies import GAS, SupplyConfig
+from isa_ros.config.text.names import parted
 from isa_ros.core.units import MPA
 from isa_ros.run.events import Event, TRIP
 from matplotlib.axes import Axes
@@ -15,12 +17,13 @@ import numpy as np
 
 _TRIP = 'black'     # no curve has it
 _MOST_MARKS = 20
+_PRESSURE = 'pressure, MPa gauge'
 _OF_LEG = ('position', 'torque', 'foot_force')
 
 
 def figures(signals: Signals, events: Sequence[Event] = ()) -> dict[str, Figure]:
     """
-    Return the figures of a run by name: the legs first, then every actuator.
+    Return the figures of a run by name: the legs first, then every actuator, then every circuit.
 
     What was not recorded is left out. A line at each trip of an actuator among ``events`` is drawn
     in its figure.
@@ -33,6 +36,9 @@ def figures(signals: Signals, events: Sequence[Event] = ()) -> dict[str, Figure]
         drawn[actuator.name] = actuator_figure(actuator, signals)
         _mark(drawn[actuator.name], [
             own for own in events if (own.kind, own.source) == (TRIP, actuator.name)])
+    for supply in signals.run.supplies:
+        if circuit_signals(supply, signals):
+            drawn[supply.name] = circuit_figure(supply, signals)
     return drawn
 
 
@@ -69,8 +75,38 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
             ('A', of('pressure_a'), 'C2'), ('B', of('pressure_b'), 'C4'),
             ('supply', signals.drawn(signals.supply_of(actuator.name)), 'gray')):
         pressure.plot(signal.t, signal.values / MPA, label=name, color=color)
-    pressure.set_ylabel('pressure, MPa gauge')
+    cushion = of('cushion_pressure')
+    if cushion.values.any():
+        is_in = np.where(cushion.values == 0.0, np.nan, cushion.values)
+        pressure.plot(cushion.t, is_in / MPA, label='cushion', color='C3')
+    pressure.set_ylabel(_PRESSURE)
     return finish(figure, (position, force, pressure, valve))
+
+
+def circuit_signals(supply: SupplyConfig, signals: Signals) -> dict[str, Signal]:
+    """Return the recorded pressures and gas temperatures of the parts of a circuit by name."""
+    names = [f'{own.name}.{field}' for own in supply.sampled[1:] for field in own.published]
+    return {name: signals.over_time(name) for name in names if name in signals}
+
+
+def circuit_figure(supply: SupplyConfig, signals: Signals) -> Figure:
+    """Draw the pressures of a circuit's manifolds, and the temperatures of its accumulators."""
+    found = circuit_signals(supply, signals)
+    gas = {name for name in found if name.endswith(GAS)}
+    n = bool(gas) + (len(gas) < len(found))
+    figure, axes = stack(n, f'{supply.name} (circuit)', 2.2 + 2.2 * n)
+    for ax, names, scale, label in (
+            (axes[0], found.keys() - gas, MPA, _PRESSURE),
+            (axes[-1], gas, 1.0, 'temperature of gas, celsius')):
+        for name in (own for own in found if own in names):
+            ax.plot(found[name].t, found[name].values / scale, label=part_of(name))
+            ax.set_ylabel(label)
+    return finish(figure, axes)
+
+
+def part_of(name: str) -> str:
+    """Return the part of a circuit that a signal belongs to."""
+    return parted(name.rpartition('.')[0])[1]
 
 
 def leg_figure(leg: LegConfig, signals: Signals) -> Figure:

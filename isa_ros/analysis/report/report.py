@@ -9,11 +9,12 @@ from isa_ros.analysis.report.ending import ending
 from isa_ros.analysis.report.energy import (
     energy_legend, energy_table, parts_table, recorded_accounts)
 from isa_ros.analysis.report.events import event_rows, recorded_events
-from isa_ros.analysis.report.figures import figures
+from isa_ros.analysis.report.figures import circuit_signals, figures
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
+from isa_ros.config.runs.supplies import GAS
 from isa_ros.config.text.names import flat
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
@@ -98,7 +99,7 @@ def _refuse_others(page: Path) -> None:
 
 
 def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
-    """Return (signal, least, greatest, unit) of each actuator and ground's force, as recorded."""
+    """Return (signal, least, greatest, unit) of actuators, circuits and ground, as recorded."""
     values = []
     for actuator in signals.run.actuators:
         name = actuator.name
@@ -109,6 +110,16 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
                 ('pressure', np.concatenate(pressures), 'MPa gauge')):
             if len(series):
                 values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
+        cushion = signals.drawn(f'{name}.cushion_pressure').values / MPA
+        if cushion.any():
+            values.append((f'{name} cushion pressure', 0.0, float(cushion.max()), 'MPa gauge'))
+    for supply in signals.run.supplies:
+        for name, recorded in circuit_signals(supply, signals).items():
+            is_gas = name.endswith(GAS)
+            series = recorded.values if is_gas else recorded.values / MPA
+            values.append((
+                f'{name.rpartition(".")[0]} {"gas" if is_gas else "pressure"}',
+                float(series.min()), float(series.max()), 'celsius' if is_gas else 'MPa gauge'))
     for leg in signals.run.legs:
         if f'{leg.name}.foot_force' not in signals:
             continue

@@ -34,11 +34,15 @@ _ACTUATOR = {
     'force_reference': ('references', 'position[1]'),
     'spool_reference': ('references', 'position[2]'),
     'current_reference': ('references', 'position[3]'),
+    'cushion_pressure': ('cushion_pressure', 'fluid_pressure'),
     'temperature': ('temperature', 'temperature')}
 """(suffix of the topic, field) by field of a `SAMPLE`."""
-AT_EVERY_TICK = tuple(field for field in _ACTUATOR if field != 'temperature')
+AT_EVERY_TICK = tuple(
+    field for field in _ACTUATOR if field not in ('cushion_pressure', 'temperature'))
 """Fields of a `SAMPLE` that every bag has at every tick."""
-_SUPPLY = ('pressure', 'return_pressure')
+_SUPPLY = {'pressure': 'fluid_pressure', 'return_pressure': 'fluid_pressure',
+           'gas_temperature': 'temperature'}
+"""Field of the message by field of a `SUPPLY_SAMPLE`."""
 
 
 class Signal(NamedTuple):
@@ -153,10 +157,10 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
             if trace is not None and trace.has([path]):
                 yield f'{actuator.name}.{name}', _signal(trace, path)
     for supply in run.sampled_supplies:
-        for name in _SUPPLY:
+        for name, path in _SUPPLY.items():
             trace = traces.get(supply_topic(supply.name, name))
             if trace is not None:
-                yield f'{supply.name}.{name}', _signal(trace, 'fluid_pressure')
+                yield f'{supply.name}.{name}', _signal(trace, path)
     for body in run.bodies:
         fields = {field.name: field for field in body.fields}
         for message in body.messages(run.step_ns):

@@ -10,15 +10,17 @@ from isa_ros.config.text.sections import names_at, Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
 from isa_ros.surroundings.circuits.manifold import ManifoldPart
-from isa_ros.surroundings.circuits.sheet import CircuitSupply
+from isa_ros.surroundings.circuits.sheet import CircuitSupply, Part
 from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.surroundings.surroundings import EMERGENCY_STOP
 
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""
-_PUBLISHED = ('pressure', 'return_pressure')
+PRESSURE, RETURN, GAS = 'pressure', 'return_pressure', 'gas_temperature'
+"""Signals that have a topic."""
 
 
 class Sampled(NamedTuple):
@@ -43,10 +45,10 @@ class SupplyConfig:
     def sampled(self) -> tuple[Sampled, ...]:
         """Return the rows of its samples: its own, and of a circuit one for each part."""
         has_return = isinstance(self.sheet.return_line, VolumeReturn)
-        own = Sampled(self.name, _PUBLISHED[:1 + has_return])
+        own = Sampled(self.name, (PRESSURE, RETURN) if has_return else (PRESSURE,))
         if not isinstance(self.sheet, CircuitSupply):
             return (own,)
-        return (own, *(Sampled(f'{self.name}/{part}', _PUBLISHED[:isinstance(sheet, ManifoldPart)])
+        return (own, *(Sampled(f'{self.name}/{part}', _published_of(sheet))
                        for part, sheet in self.sheet.by_name.items()))
 
     def sampled_at(self, actuator: str) -> str:
@@ -75,6 +77,12 @@ class SupplyConfig:
     def span(self) -> float:
         """Return the supply pressure above return pressure, Pa."""
         return (self.sheet.pressure_mpa - self.sheet.return_pressure_mpa) * MPA
+
+
+def _published_of(part: Part) -> tuple[str, ...]:
+    """Return the signals of a part of a circuit that have a topic."""
+    return ((PRESSURE,) if isinstance(part, ManifoldPart)
+            else (GAS,) if isinstance(part, AccumulatorPart) else ())
 
 
 def _fed(value: Any, place: Place) -> Any:

@@ -18,6 +18,7 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
+from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
@@ -70,17 +71,19 @@ class ActuatorNode(Node):
             self, self.actuator, changing(config.sheet, config.load), self._parameter_overrides)
         self._acceptance = Acceptance(self, accept)
         self._acceptance.guard_parameters()
-        memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
+        memory, plant = self.actuator.memory, config.sheet.plant
+        heats_up, has_cushion = is_heated(plant), is_cushioned(plant)
         self._published_ns = 0
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],
                   heated=[config.name] if heats_up else [],
-                  linked=[config.name] if self.actuator.has_link else []),
+                  linked=[config.name] if self.actuator.has_link else [],
+                  cushioned=[config.name] if has_cushion else []),
             PublishedRows(
                 memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), {}, memory.sent),
             is_run=False, start_ns=timing.start_ns)
         self.outlet = PreparedPublishers(
-            self, topics_of_actuator('~', heats_up, self.actuator.has_link))
+            self, topics_of_actuator('~', heats_up, self.actuator.has_link, has_cushion))
         """The publishers of the actuator's topics."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)

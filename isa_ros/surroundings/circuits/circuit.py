@@ -20,7 +20,7 @@ from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.circuits.stiffness import steps_of
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
 import numpy as np
 from numpy.typing import NDArray
@@ -245,6 +245,7 @@ class Circuit:
         self._oil[:] = values[size:size + self._oil.size].reshape(self._oil.shape)
         self._network.nodes['gas']['amount'] = values[size + self._oil.size:]
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
-        samples = self.samples.copy()
+        saved = list(SUPPLY_STATE.names or ())
+        samples = self.samples[saved].copy()
         self._show()
-        self.samples[:] = samples
+        self.samples[saved] = samples

@@ -9,7 +9,7 @@ a leak or a tear is a connection of the manifold that it is at. Equations E10 to
 """
 
 from isa_ros.core.kernel import kernel
-from isa_ros.surroundings.circuits.accumulator import AccumulatorPart, gas_energy
+from isa_ros.surroundings.circuits.accumulator import AccumulatorPart, gas_energy, ICE
 from isa_ros.surroundings.circuits.line import LinePart
 from isa_ros.surroundings.circuits.network import (
     element_flow, OF_LINE, OF_ORIFICE, OF_PUMP, PER_NODE)
@@ -183,6 +183,7 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, gas, oil, samp
                 sample.pressure, state[n + i], nodes[i]), elements, sample)
         elif row.kind == OF_GAS:
             node, theta = nodes[row.inlet], state[n + row.inlet]
+            sample.gas_temperature = theta - ICE
             sample.relief_energy = -state[3 * n + row.inlet]
             volume = gas_volume(sample.pressure, theta, node)
             sample.drawn = max(0.0, gas[row.inlet] - volume)

@@ -57,6 +57,26 @@ def test_it_goes_from_isothermal_to_adiabatic(decade: float) -> None:
         assert expected.real == pytest.approx(volume / (KAPPA * p), rel=0.01, abs=0.0)
 
 
+@pytest.mark.parametrize(('tau', 'cold'), [(1000.0, 0.999), (0.05, 0.0)])
+def test_its_sample_has_the_temperature_of_its_gas(tau: float, cold: float) -> None:
+    """Fast: `theta (p_2/p_1)^((kappa - 1)/kappa)`, nearly; slow: that of its surroundings."""
+    parts = STANDS + BUFFER.replace('time_constant_s: 0.05', f'time_constant_s: {tau}')
+    circuit = circuit_of(parts.replace('10.0, the', '10.0, celsius: 31.0, the'), 'main')
+    place, gas = (circuit.samples[1 + list(sheet_of(parts).by_name).index(name)]
+                  for name in ('main', 'buffer'))
+    assert gas['gas_temperature'] == pytest.approx(31.0, abs=1e-9)
+    before = place['pressure'] + ATMOSPHERE
+    for _ in range(100):
+        circuit.advance_held([1e-6], [0.0])
+    for _ in range(1000 if tau < 1.0 else 0):
+        circuit.advance_held([0.0], [0.0])
+    ratio = (place['pressure'] + ATMOSPHERE) / before
+    assert 0.5 < ratio < 0.9
+    fall = 304.15 * (1.0 - ratio ** ((KAPPA - 1.0) / KAPPA))
+    assert 31.0 - gas['gas_temperature'] == pytest.approx(cold * fall, rel=2e-3, abs=1e-3)
+    assert place['gas_temperature'] == circuit.samples[0]['gas_temperature'] == 0.0
+
+
 def test_below_its_precharge_it_is_empty() -> None:
     """Only the oil of the manifold is left, of V/beta; the gas fills its shell."""
     bench = Bench(STANDS + BUFFER)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from isa_ros.analysis.report.energy import (
     energy_table, energy_text, parts_table, recorded_accounts)
+from isa_ros.analysis.signals.recorded_result import read as read_bag
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
@@ -12,6 +13,7 @@ from isa_ros.replay.replay import recorded_inputs
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
 import numpy as np
 import pytest
 from tests.replay.test_replay_faults import content, replayed, result_of
@@ -49,7 +51,16 @@ def test_a_bag_has_pressures_of_manifolds_and_accounts_of_parts(
     topics = {message.topic for message in Bag(bag).messages()}
     assert {'/coordinator/station_pressure', '/station/press_pressure',
             '/station/drain_pressure'} <= topics
-    assert '/station/pump_pressure' not in topics
+    assert not topics & {'/station/pump_pressure', '/station/buffer_pressure',
+                         '/station/press_gas_temperature'}
+    types = Bag(bag).types
+    assert {types[f'/station/{name}_gas_temperature'] for name in ('buffer', 'tool_buffer')} == {
+        'sensor_msgs/msg/Temperature'}
+    read = read_bag(bag)
+    for name in ('station/buffer', 'station/tool_buffer'):
+        found = read[f'{name}.gas_temperature']
+        assert (found == result[f'{name}.gas_temperature']).all() and np.ptp(found) > 0.05
+        assert read.units[f'{name}.gas_temperature'] == 'celsius'
     found = recorded_accounts(Bag(bag))
     assert found is not None
     for name in ('station', 'station/press_hose', 'station/pump'):
@@ -82,6 +93,9 @@ def test_a_saved_run_goes_on_byte_for_byte(result: Result) -> None:
     for _ in range(50):
         second.step()
     ends = second.surroundings.supplies
+    restored = Simulation(RUN.scenario)
+    restored.restore(first.snapshot())
+    assert restored.surroundings.supplies.tobytes() == result.log.supplies[70].tobytes()
     assert ends.tobytes() == result.log.supplies[-1].tobytes()
 
 
@@ -107,6 +121,17 @@ def test_surroundings_fill_ports_by_manifold_and_restore_or_refuse() -> None:
     assert other.snapshot() == saved
     with pytest.raises(ConfigError, match='saved state of the surroundings has'):
         other.restore(saved[:-8])
+
+
+def test_a_saved_state_has_the_signals_that_it_always_had() -> None:
+    """14 numbers a row, behind the accounts nothing that follows from the circuit's own state."""
+    surroundings = surroundings_of(RUN.configuration)
+    assert SUPPLY_STATE.names == SUPPLY_SAMPLE.names[:14] and 'gas_temperature' in (
+        SUPPLY_SAMPLE.names[14:])
+    states = np.frombuffer(surroundings.snapshot(), SUPPLY_STATE, len(surroundings.supplies))
+    for name in SUPPLY_STATE.names or ():
+        assert (states[name] == surroundings.supplies[name]).all()
+    assert np.ptp(states['pressure']) > 1e6
 
 
 def test_the_message_of_the_page_is_that_of_the_command() -> None:
