@@ -1,9 +1,11 @@
 """The decorators of what this package compiles."""
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar
 
 from isa_ros.core.kernel_cache import CACHE, cache_of
+from isa_ros.core.pointers import memory_at, TABLE
 import numba
 from numba import types
 from numba.core.registry import cpu_target
@@ -44,3 +46,27 @@ def kernel_function(function: _Function) -> _Function:
         setattr(function, 'kernel', compiled)   # numba's type refers to it weakly
         cpu_target.typing_context.insert_global(function, types.Dispatcher(compiled))
     return function
+
+
+IS_COMPILED = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+"""Whether kernels are machine code, and not the functions themselves."""
+
+
+@cache
+def entry_of(function: Any, kind: Any) -> int:
+    """
+    Return the address of a kernel with the C signature ``int64_t f(const int64_t *table)``.
+
+    The kernel takes a memory of a ``kind``; the table has address and shape of its arrays.
+    """
+    memory = memory_at(kind)
+
+    def entry(table: Any) -> Any:
+        return function(memory(table))
+    entry.__qualname__ = function.__qualname__
+    entry.__module__ = function.__module__
+    compiled = _kept(numba.njit(**_OPTIONS)(entry))
+    compiled.compile((TABLE,))
+    made, = compiled.overloads.values()
+    address: int = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
+    return address

@@ -20,6 +20,7 @@ import llvmlite
 import numba
 from numba import types
 from numba.core.dispatcher import Dispatcher
+from numba.core.extending import _Intrinsic
 import numpy as np
 
 # What is left out of bytecode: places for the interpreter's notes, and what -OO leaves of asserts.
@@ -35,6 +36,9 @@ _BY_NAME = frozenset(('builtins', 'llvmlite', 'math', 'numba', 'numpy', 'operato
 """Packages of which a name says all: their versions are part of `environment`."""
 _SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
              'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
+
+
+_CALLED = (Dispatcher, _Intrinsic, FunctionType, BuiltinFunctionType, np.ufunc)
 
 
 class UnknownValue(Exception):
@@ -53,6 +57,8 @@ def _function_of(value: Any) -> Any:
     """Return the Python function of a kernel or function whose code matters, None for others."""
     if isinstance(value, Dispatcher):
         return value.py_func
+    if isinstance(value, _Intrinsic):
+        return value._defn
     is_own = isinstance(value, FunctionType) and _package(value) not in _BY_NAME
     return value if is_own else None
 
@@ -97,6 +103,8 @@ def value_text(value: Any) -> str:
 
     """
     kind: Any = type(value)
+    if value is Any:
+        return 'Any'
     if value is None or kind in (bool, int, float, complex, str, bytes):
         return f'{kind.__name__} {value!r}'
     if isinstance(value, tuple):
@@ -115,7 +123,7 @@ def value_text(value: Any) -> str:
         return _class_text(value)
     if isinstance(value, types.Type):
         return type_text(value)
-    if isinstance(value, Dispatcher | FunctionType | BuiltinFunctionType | np.ufunc):
+    if isinstance(value, _CALLED):
         function: Any = _function_of(value) or value
         return (f'function {getattr(function, "__module__", "")}.'
                 f'{getattr(function, "__qualname__", function.__name__)}')
