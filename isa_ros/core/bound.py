@@ -1,0 +1,116 @@
+"""
+Kernels bound to their memory: what a loop of ticks, in Python or compiled, calls.
+
+A bound kernel takes one argument, a `NamedTuple` of arrays that is its whole memory, and returns
+a whole number. Its machine code has the C signature ``int64_t f(const int64_t *table)``: the
+table has address and shape of every array. So a compiled loop calls what it was not compiled
+with, Python calls it without looking at each array again, and a program without Python can call
+it too.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+import ctypes
+from typing import Any
+
+from isa_ros.core.kernel import entry_of, IS_COMPILED, kernel
+from isa_ros.core.pointers import call_at, kind_of
+import numpy as np
+from numpy.typing import NDArray
+
+_CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
+
+
+def arrays_of(memory: Any) -> Iterator[NDArray[Any]]:
+    """
+    Yield the arrays of a memory, those of nested ones in their place.
+
+    Raises
+    ------
+    ValueError
+        An array has gaps between its rows, or one of them is none.
+
+    """
+    for part in memory:
+        if isinstance(part, tuple):
+            yield from arrays_of(part)
+        elif isinstance(part, np.ndarray) and part.flags.c_contiguous:
+            yield part
+        else:
+            raise ValueError(f'{part!r} is not an array without gaps')
+
+
+def table_of(memory: Any) -> NDArray[np.int64]:
+    """Return address and shape of every array of a memory, one after the other."""
+    return np.array([number for array in arrays_of(memory)
+                     for number in (array.ctypes.data, *array.shape)], np.int64)
+
+
+class Bound:
+    """
+    A kernel over its ``memory``; a call runs it and returns what it returns.
+
+    The arrays of the memory must stay where they are. ``function`` takes the memory alone.
+    """
+
+    def __init__(self, function: Any, memory: Any) -> None:
+        self.function, self.memory = function, memory
+        self.table = table_of(memory)
+        """What the machine code is called with."""
+        self.address = 0
+        """Of the machine code; 0 without the compiler."""
+        if IS_COMPILED:
+            self.address = entry_of(function, kind_of(memory))
+            called, table = _CALLED(self.address), ctypes.c_void_p(self.table.ctypes.data)
+            self.run: Callable[[], int] = lambda: called(table)
+        else:
+            records = _with_attributes(memory)
+            self.run = lambda: int(function(records))
+
+
+def _with_attributes(memory: Any) -> Any:
+    """Return a memory whose rows have attributes, for kernels that are plain Python."""
+    parts = [_with_attributes(part) if isinstance(part, tuple)
+             else part if part.dtype.names is None else np.asarray(part.view(np.recarray))
+             for part in memory]
+    return type(memory)(*parts)
+
+
+@kernel
+def run_rounds(rounds, program):
+    """
+    Run the bound kernels of a program one after the other, in at most so many rounds.
+
+    ``program`` has address and table of each, (n, 2). A round in which one of them returned
+    another number than 0 is the last. Return the rounds that were run, the place of the first
+    such kernel or -1, and its number.
+    """
+    for done in range(rounds):
+        place, found = -1, 0
+        for k in range(len(program)):
+            given = call_at(program[k, 0], program[k, 1])
+            if given != 0 and place < 0:
+                place, found = k, given
+        if place >= 0:
+            return done + 1, place, found
+    return rounds, -1, 0
+
+
+class Program:
+    """Bound kernels that are run together, in rounds."""
+
+    def __init__(self, parts: Sequence[Bound]) -> None:
+        self.parts = tuple(parts)
+        self._program = np.array(
+            [(part.address, part.table.ctypes.data) for part in parts], np.int64).reshape(-1, 2)
+
+    def run(self, rounds: int) -> tuple[int, int, int]:
+        """Run so many rounds, or fewer; return as `run_rounds`."""
+        if IS_COMPILED:
+            done, place, found = run_rounds(rounds, self._program)
+            return int(done), int(place), int(found)
+        for done in range(rounds):
+            found = [part.run() for part in self.parts]
+            for place, given in enumerate(found):
+                if given:
+                    return done + 1, place, given
+        return rounds, -1, 0
