@@ -6,10 +6,10 @@ The same class is used by a single node, by many nodes in one process, and by re
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 import hashlib
 from typing import NoReturn
 
-from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
@@ -21,11 +21,12 @@ from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.actuator.ticking import bound_tick, ticked
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, position_after, Tuning
+from isa_ros.core.bound import Bound
 from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import TIME_BYTES, time_of
-from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import own_record, static_force
@@ -69,7 +70,6 @@ class SmartActuator:
         """Its row in the memory of the tick kernel."""
         self._config = config
         self._timing = timing
-        self._steps = timing.steps
         self.memory.is_shared[0] = config.load is None
         offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
         constants = self.memory.constants
@@ -86,7 +86,8 @@ class SmartActuator:
         self._applied, self._reply, self._sample = (
             row_record(rows) for rows in (
                 self.memory.applied, self.memory.replies, self.memory.samples))
-        self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
+        self._ticked = ticked(self.memory, timing.steps)
+        self._commands = self._ticked.commands
         self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
@@ -245,17 +246,20 @@ class SmartActuator:
             A state is no longer finite.
 
         """
-        incoming = self.memory.ports
-        if port is not None:
-            incoming = self._incoming
-            incoming[0] = port
+        own = self._ticked
+        own.ports[0] = self.memory.ports[0] if port is None else port
         self.latch_tuning()
-        self._commands['kinds'] = 0
-        broken = kernels.actuator_tick(
-            self.t_ns // PLANT_STEP_NS, self._steps, incoming, self._commands, self.memory)
+        own.commands['kinds'] = 0
+        own.clock[0] = self.t_ns // PLANT_STEP_NS
+        broken = self._tick.run()
         self.t_ns += self._timing.step_ns
-        if broken >= 0:
-            self.raise_diverged(broken)
+        if broken:
+            self.raise_diverged(broken - 1)
+
+    @cached_property
+    def _tick(self) -> Bound:
+        """Return its own tick, which is not needed where all of a process tick together."""
+        return bound_tick(self._ticked)
 
     def latch_tuning(self) -> None:
         """Begin a tick: put tuned values in force, without a jump of the valve current."""

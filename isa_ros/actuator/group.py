@@ -10,6 +10,7 @@ from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
+from isa_ros.actuator.ticking import bound_tick, ticked
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
@@ -58,7 +59,9 @@ class ActuatorGroup:
             for k, config in enumerate(configs)]
         """The same actuators one by one, in the order of ``configs``."""
         self._values = [actuator.tuning.values for actuator in self.actuators]
-        self._no_commands: Records = np.zeros(len(configs), COMMAND)
+        self.ticked = ticked(self._memory, self._steps)
+        """Memory of their tick."""
+        self._tick = bound_tick(self.ticked)
 
     @property
     def t_ns(self) -> int:
@@ -139,10 +142,15 @@ class ActuatorGroup:
 
         """
         self._latch()
-        broken = kernels.actuator_tick(
-            self.t_ns // PLANT_STEP_NS, self._steps, ports,
-            self._no_commands if commands is None else commands, self._memory)
-        self._end(1, broken)
+        own = self.ticked
+        if ports is not own.ports:
+            own.ports[:] = ports
+        if commands is None:
+            own.commands['kinds'] = 0
+        elif commands is not own.commands:
+            own.commands[:] = commands
+        own.clock[0] = self.t_ns // PLANT_STEP_NS
+        self._end(1, self._tick.run() - 1)
         return self._memory.replies
 
     def advance_many(

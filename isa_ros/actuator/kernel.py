@@ -199,7 +199,7 @@ def tick_row(first_step, steps, port, feed, actuator, continuous, rates, y, k, r
         send_sample(first_step + steps, link, memory)
 
 
-@kernel
+@part_of_kernel
 def actuator_tick(first_step, steps, incoming, commands, memory):
     """
     Advance every actuator by ``steps`` plant steps, one after the other.

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 import ctypes
 from typing import Any
 
-from isa_ros.core.kernel import entry_of, IS_COMPILED, kernel
+from isa_ros.core.kernel import address_of, entry_of, IS_COMPILED, kernel
 from isa_ros.core.pointers import call_at, kind_of
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,7 @@ class Bound:
         self.address = 0
         """Of the machine code; 0 without the compiler."""
         if IS_COMPILED:
-            self.address = entry_of(function, kind_of(memory))
+            self.address = address_of(entry_of(function, kind_of(memory)))
             called, table = _CALLED(self.address), ctypes.c_void_p(self.table.ctypes.data)
             self.run: Callable[[], int] = lambda: called(table)
         else:

@@ -53,11 +53,12 @@ IS_COMPILED = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
 
 
 @cache
-def entry_of(function: Any, kind: Any) -> int:
+def entry_of(function: Any, kind: Any) -> Any:
     """
-    Return the address of a kernel with the C signature ``int64_t f(const int64_t *table)``.
+    Return a kernel over a memory of a ``kind`` as one over the `TABLE` of its arrays.
 
-    The kernel takes a memory of a ``kind``; the table has address and shape of its arrays.
+    It is compiled by `address_of`, and then has the signature ``int64_t f(const int64_t *table)``
+    of C.
     """
     memory = memory_at(kind)
 
@@ -65,8 +66,12 @@ def entry_of(function: Any, kind: Any) -> int:
         return function(memory(table))
     entry.__qualname__ = function.__qualname__
     entry.__module__ = function.__module__
-    compiled = _kept(numba.njit(**_OPTIONS)(entry))
-    compiled.compile((TABLE,))
-    made, = compiled.overloads.values()
+    return _kept(numba.njit(**_OPTIONS)(entry))
+
+
+def address_of(entry: Any) -> int:
+    """Return the address of an entry's machine code; it is compiled or loaded if need be."""
+    entry.compile((TABLE,))
+    made, = entry.overloads.values()
     address: int = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
     return address

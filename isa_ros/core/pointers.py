@@ -10,7 +10,6 @@ import llvmlite.ir as ir
 from numba import types, typeof
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numba.np.arrayobj import make_array, populate_array
 
 TABLE = types.CPointer(types.int64)
 """Address and shape of every array, one after the other."""
@@ -23,6 +22,7 @@ def kind_of(memory: Any) -> Any:
 
 def _array(context: Any, builder: Any, kind: Any, table: Any, at: int) -> tuple[Any, int]:
     """Return the array of a kind whose address is at a place of the table, and the next place."""
+    from numba.np.arrayobj import make_array, populate_array     # only a compiler needs it
     words = [builder.load(cgutils.gep_inbounds(builder, table, at + k))
              for k in range(1 + kind.ndim)]
     data = builder.inttoptr(words[0], context.get_data_type(kind.dtype).as_pointer())

@@ -66,9 +66,11 @@ class CompilationReport(Listener):
 
 def _of_tick() -> Sequence[Any]:
     """Return the kernel of a tick, which needs nearly all, if it is loaded and not kept."""
-    module = sys.modules.get('isa_ros.actuator.kernel')
-    tick = getattr(module, 'actuator_tick', None)
-    return [] if tick is None or tick.overloads or is_kept(tick) else [tick]
+    module = sys.modules.get('isa_ros.actuator.ticking')
+    if module is None:
+        return []
+    tick = module.tick_kernel()
+    return [] if tick.overloads or is_kept(tick) else [tick]
 
 
 def to_compile(*kernels: Any) -> int:

@@ -25,9 +25,9 @@ import isa_ros
 with install_recorder('numba:compile') as compiled:
     for path in shipped(CONFIG).values():
         warmed_up(load_run(path))
-from isa_ros.actuator.kernel import actuator_tick
+from isa_ros.actuator.ticking import tick_kernel
 print(isa_ros.__file__, [event.data['dispatcher'].__name__ for _, event in compiled.buffer],
-      bool(actuator_tick.stats.cache_hits))
+      bool(tick_kernel().stats.cache_hits))
 print([name for name in ('numba.np.arraymath', 'scipy.linalg') if name in sys.modules])
 """
 
@@ -35,9 +35,9 @@ LEG = load_run(shipped(CONFIG)['leg.yaml'])
 SURROUNDINGS = """
 from isa_ros.run.warm_up import compile_surroundings
 compile_surroundings()
-from isa_ros.actuator.kernel import actuator_tick
+from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.surroundings.bodies.leg.port_kernel import leg_ports, leg_tick
-print(actuator_tick.signatures, len(leg_ports.signatures), len(leg_tick.signatures))
+print(tick_kernel().signatures, len(leg_ports.signatures), len(leg_tick.signatures))
 """
 
 
