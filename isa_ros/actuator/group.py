@@ -11,7 +11,7 @@ from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
 from isa_ros.actuator.ticking import bound_tick, ticked
-from isa_ros.core.signals import COMMAND, Records, SAMPLE
+from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np

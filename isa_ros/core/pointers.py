@@ -7,7 +7,7 @@ The functions here are known to the compiler only.
 from typing import Any
 
 import llvmlite.ir as ir
-from numba import types, typeof
+from numba import typeof, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
@@ -28,7 +28,8 @@ def _array(context: Any, builder: Any, kind: Any, table: Any, at: int) -> tuple[
     data = builder.inttoptr(words[0], context.get_data_type(kind.dtype).as_pointer())
     item = context.get_constant(types.intp, context.get_abi_sizeof(
         context.get_data_type(kind.dtype)))
-    strides, stride = [], item
+    strides: list[Any] = []
+    stride = item
     for size in reversed(words[1:]):
         strides.insert(0, stride)
         stride = builder.mul(stride, size)
@@ -57,10 +58,13 @@ def memory_at(kind: Any) -> Any:
     return intrinsic(at_table)
 
 
-@intrinsic
-def call_at(typing_context: Any, address: Any, table: Any) -> Any:
-    """Return what the machine code at an address returns for a table, by their addresses."""
+def _called_at(typing_context: Any, address: Any, table: Any) -> Any:
+    """Return the signature and the generator of `call_at`."""
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         called = ir.FunctionType(ir.IntType(64), [ir.IntType(64)])
         return builder.call(builder.inttoptr(arguments[0], called.as_pointer()), arguments[1:])
     return types.int64(address, table), generate
+
+
+call_at: Any = intrinsic(_called_at)
+"""Of an address and that of a table: what the machine code at the address returns for it."""
