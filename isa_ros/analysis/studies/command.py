@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from isa_ros.analysis.studies import (
-    falling_load, hysteresis, page, power_unit, servo_valve, temperature)
+    falling_load, hysteresis, lowering, page, power_unit, servo_valve, temperature)
 from isa_ros.analysis.studies.measure import Benches, results, Studied
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
@@ -45,7 +45,7 @@ def study(options: Namespace) -> None:
 
 
 _OWN: Mapping[str, Any] = {own.NAME: own for own in (
-    temperature, servo_valve, hysteresis, falling_load, power_unit)}
+    temperature, servo_valve, hysteresis, falling_load, lowering, power_unit)}
 """The studies with a rig and a page of their own: modules, by name."""
 
 

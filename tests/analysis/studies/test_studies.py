@@ -9,7 +9,7 @@ import sys
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.signals.frequency import ripple
 from isa_ros.analysis.studies import (
-    falling_load, hysteresis, measure as study_run, power_unit, servo_valve, temperature)
+    falling_load, hysteresis, lowering, measure as study_run, power_unit, servo_valve, temperature)
 from isa_ros.analysis.studies.measure import (
     Benches, changed, MeasuresAt, placed, shipped, Studied, up_and_back)
 from isa_ros.analysis.studies.page import seen
@@ -169,7 +169,7 @@ def test_without_a_name_the_studies_are_listed(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == [
         *(study.name for study in STUDIES), temperature.NAME, servo_valve.NAME, hysteresis.NAME,
-        falling_load.NAME, power_unit.NAME]
+        falling_load.NAME, lowering.NAME, power_unit.NAME]
 
 
 @pytest.mark.parametrize(('arguments', 'expected'), [
