@@ -8,6 +8,7 @@ empty sequence does not align its (absent) elements.
 """
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 import re
 import struct
 from typing import Any, NamedTuple, Protocol
@@ -26,6 +27,8 @@ PRIMITIVES = {
 _SEQUENCE = re.compile(r'sequence<(.+?)(?:, \d+)?>')
 _ARRAY = re.compile(r'(.+)\[(\d+)\]')
 _STRING = re.compile(r'string(<\d+>)?')
+_LENGTH = struct.Struct('<I')     # of a string; the encapsulation header has its size
+_DECLARATIONS = 1024    # of fields that are remembered: encoding a message reads each again
 
 
 class CdrError(IsaError):
@@ -55,6 +58,7 @@ class Slot(NamedTuple):
     code: str
 
 
+@lru_cache(_DECLARATIONS)
 def field_type(declared: str) -> FieldType:
     """Return the `FieldType` of a declaration such as ``sequence<double, 3>``."""
     if match := _SEQUENCE.fullmatch(declared):
@@ -64,6 +68,7 @@ def field_type(declared: str) -> FieldType:
     return FieldType(declared, False, None)
 
 
+@lru_cache(_DECLARATIONS)
 def is_string(item: str) -> bool:
     """Return whether an element type is a (bounded) 8-bit string."""
     return _STRING.fullmatch(item) is not None
@@ -148,11 +153,13 @@ class _Encoder:
             raise CdrError(f'{path} is a {item}, which has no canonical encoding here')
         for k, value in enumerate(values):
             if is_string(item):
-                text = value.encode() + b'\0'
-                self._add_primitives('I', [len(text)], path, is_listed=False)
-                self.buffer += text
+                self._add_string(value)
             else:
                 self.add_message(value, f'{path}[{k}].' if is_array else f'{path}.')
+
+    def _add_string(self, value: str) -> None:
+        text = value.encode() + b'\0'
+        self.buffer += bytes(-len(self.buffer) % _LENGTH.size) + _LENGTH.pack(len(text)) + text
 
     def _add_primitives(
             self, code: str, values: Iterable[Any], path: str,

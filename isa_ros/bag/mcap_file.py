@@ -15,7 +15,8 @@ import struct
 from typing import NamedTuple
 import zlib
 
-from isa_ros.bag.message_chunk import Chunk, Entries, Layouts
+from isa_ros.bag.checksum import joined
+from isa_ros.bag.message_chunk import Buffers, Chunk, Entries, Layouts
 import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
@@ -23,8 +24,6 @@ from mcap.records import (
     Attachment, AttachmentIndex, Channel, Chunk as ChunkRecord, ChunkIndex, DataEnd, Footer,
     Header, McapRecord, Metadata, MetadataIndex, Schema, Statistics, SummaryOffset)
 from mcap.writer import MCAP0_MAGIC
-import numpy as np
-from numpy.typing import NDArray
 import zstandard
 
 _INDEX_HEADER = struct.Struct('<BQHI')  # opcode, length, channel, bytes of entries
@@ -33,8 +32,6 @@ _ENTRY_BYTES = 16  # of a message index: time, offset
 _ZSTD_LEVEL = 1  # for a leg's bag higher levels take longer and save 2 %
 _FOOTER_FIXED = struct.Struct('<BQQQ')  # opcode, length, summary and summary offset start
 _LENGTH = struct.Struct('<Q')
-_BUFFER_BYTES = 1024 * 1024 + 64 * 1024  # of a chunk and the tick that ends it
-_BUFFERS = 2  # one is filled while the other is written
 
 Bytes = bytes | memoryview
 
@@ -69,14 +66,16 @@ class McapFile:
     """
     Append-only MCAP file: every written record is complete on disk.
 
-    ``compression`` of the chunks is none, lz4 or zstd. A failed write leaves the file as it was
-    before, so that it can still be read and finished. Every method that writes, and `check`,
-    raises an OSError.
+    ``compression`` of the chunks is none, lz4 or zstd; ``buffers`` are the memory that they are
+    filled in. A failed write leaves the file as it was before, so that it can still be read and
+    finished. Every method that writes, and `check`, raises an OSError.
     """
 
-    def __init__(self, path: Path, library: str, compression: str = 'none') -> None:
+    def __init__(
+            self, path: Path, library: str, compression: str = 'none',
+            buffers: Buffers | None = None) -> None:
         self._compression = '' if compression == 'none' else compression
-        self._compress = _COMPRESSORS[compression]
+        self._compress = _COMPRESSORS[compression]()
         self._path = path
         # Appending: after a truncation by others the file stays shorter than it must be.
         self._file = io.FileIO(path, 'x', opener=_opened_to_append)
@@ -91,7 +90,7 @@ class McapFile:
         self._counts: list[int] = []
         self._totals = _Totals()
         self._layouts = Layouts()
-        self._buffers: list[NDArray[np.uint8]] = []
+        self._buffers = Buffers() if buffers is None else buffers
         self._has_chunk = False
         self._append(MCAP0_MAGIC + _bytes(Header(profile='ros2', library=library)))
 
@@ -163,8 +162,7 @@ class McapFile:
         """
         registered = [] if self._has_chunk else [*self._schemas, *self._channels]
         self._has_chunk = True
-        buffer = self._buffers.pop() if self._buffers else np.empty(_BUFFER_BYTES, np.uint8)
-        return Chunk(_bytes(*registered), self._layouts, buffer)
+        return Chunk(_bytes(*registered), self._layouts, self._buffers.take())
 
     def add_chunk(self, content: Chunk) -> list[tuple[int, int]]:
         """Write a chunk and its message indices; return (channel id, messages) of each."""
@@ -173,8 +171,7 @@ class McapFile:
         self.store(StoredChunk(
             content.start_ns, content.end_ns, content.size, zlib.crc32(content_bytes),
             self._compression, self._compress(content_bytes), indices))
-        if len(self._buffers) < _BUFFERS:
-            self._buffers.append(content.buffer)
+        self._buffers.give(content.buffer)
         return [(channel, len(index)) for channel, index in indices]
 
     def store(self, chunk: StoredChunk) -> None:
@@ -193,7 +190,11 @@ class McapFile:
             indices += _INDEX_HEADER.pack(
                 Opcode.MESSAGE_INDEX, size + _INDEX_EXCESS, channel, size)
             indices += index.astype('<u8').tobytes()
-        self._append(head, chunk.data, indices)
+        self._write(head, chunk.data, indices)
+        self._crc = zlib.crc32(head, self._crc)
+        self._crc = (zlib.crc32(chunk.data, self._crc) if chunk.compression
+                     else joined(self._crc, chunk.crc, chunk.size))
+        self._crc = zlib.crc32(indices, self._crc)
         self._chunks.append(ChunkIndex(
             message_start_time=chunk.start_ns, message_end_time=chunk.end_ns,
             chunk_start_offset=start, chunk_length=length, message_index_offsets=offsets,
@@ -225,7 +226,6 @@ class McapFile:
         if not self._file.closed:
             self._end = os.fstat(self._file.fileno())
         self._file.close()
-        self._buffers.clear()
         for records in (self._schemas, self._channels, self._chunks):
             records.clear()
 
@@ -252,39 +252,44 @@ class McapFile:
         for channel, index in chunk.indices:
             self._counts[channel - 1] += len(index)
 
-    def _append(self, *parts: Bytes) -> None:
-        """Write all parts or nothing."""
+    def _append(self, data: bytes) -> None:
+        """Write all of it or nothing."""
+        self._write(data)
+        self._crc = zlib.crc32(data, self._crc)
+
+    def _write(self, *parts: Bytes) -> None:
+        """Write all parts or nothing, at once; the caller updates the checksum."""
+        rest = [memoryview(part) for part in parts if part]
         written = 0
         try:
-            for part in parts:
-                rest = memoryview(part)
-                while rest:
-                    n = self._file.write(rest) or 0
-                    written += n
-                    rest = rest[n:]
+            while rest:
+                n = os.writev(self._file.fileno(), rest)
+                written += n
+                while rest and n >= len(rest[0]):
+                    n -= len(rest.pop(0))
+                if n:
+                    rest[0] = rest[0][n:]
         except OSError:
             self._file.truncate(self._position)
-            self._file.seek(self._position)
             raise
         self._position += written
-        for part in parts:
-            self._crc = zlib.crc32(part, self._crc)
 
 
 def _opened_to_append(path: str, flags: int) -> int:
     return os.open(path, flags | os.O_APPEND, 0o666)
 
 
-def _compressed_by_lz4(data: Bytes) -> bytes:
-    compressed: bytes = lz4.frame.compress(data)
-    return compressed
+def _lz4() -> Callable[[Bytes], bytes]:
+    compress: Callable[[Bytes], bytes] = lz4.frame.compress
+    return compress
 
 
-_COMPRESSORS: dict[str, Callable[[Bytes], Bytes]] = {
-    'none': lambda data: data,
-    'lz4': _compressed_by_lz4,
-    'zstd': lambda data: zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(data),
+_COMPRESSORS: dict[str, Callable[[], Callable[[Bytes], Bytes]]] = {
+    'none': lambda: lambda data: data,
+    'lz4': _lz4,
+    'zstd': lambda: zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress,
 }
+"""Makers of what compresses one chunk after another."""
 
 
 def _bytes(*records: McapRecord) -> bytes:

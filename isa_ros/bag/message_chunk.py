@@ -22,6 +22,8 @@ Entries = NDArray[np.uint64]
 MESSAGE_HEADER = struct.Struct('<BQHIQQ')
 """Opcode, length of the rest, channel, sequence, log time, publish time."""
 
+_BUFFER_BYTES = 1024 * 1024 + 64 * 1024  # of a chunk and the tick that ends it
+_BUFFERS = 2  # one is filled while the other is written
 _MESSAGE = int(Opcode.MESSAGE)
 _HEADER_BYTES = MESSAGE_HEADER.size
 _LENGTH_EXCESS = _HEADER_BYTES - 9  # length field of a message record minus length of its data
@@ -65,6 +67,8 @@ class _Ticks(NamedTuple):
     offsets: list[int]
     """Of each record, relative to the first of the tick."""
     size: int
+    repeats: bool
+    """Whether a channel has several messages in a tick."""
 
 
 class Layouts:
@@ -83,8 +87,9 @@ class Layouts:
         found = self._by_content.get(key)
         if found is None:
             ends = np.cumsum(layout.sizes + _HEADER_BYTES).tolist()
+            channels = (layout.topics + 1).tolist()
             found = self._by_content[key] = _Ticks(
-                layout, (layout.topics + 1).tolist(), [0, *ends[:-1]], ends[-1])
+                layout, channels, [0, *ends[:-1]], ends[-1], len(set(channels)) < len(channels))
             self._by_identity[id(layout)] = found
         return found
 
@@ -114,6 +119,22 @@ class Room(NamedTuple):
     """Size of the records of a tick."""
     n_ticks: int
     """Number of ticks that may be written."""
+
+
+class Buffers:
+    """Memory that chunks are filled in again: the first use of a page costs a tick a fault."""
+
+    def __init__(self) -> None:
+        self._free: list[NDArray[np.uint8]] = []
+
+    def take(self) -> NDArray[np.uint8]:
+        """Return memory for a chunk."""
+        return self._free.pop() if self._free else np.empty(_BUFFER_BYTES, np.uint8)
+
+    def give(self, buffer: NDArray[np.uint8]) -> None:
+        """Keep the memory of a chunk that is written, as far as the next ones need it."""
+        if len(self._free) < _BUFFERS:
+            self._free.append(buffer)
 
 
 class Chunk:
@@ -187,16 +208,19 @@ class Chunk:
         """Return (channel id, entries (n, 2) of time and offset) of each channel with messages."""
         pieces: dict[int, list[Entries]] = {}
         for ticks, start, times in self._stretches:
-            starts = range(start, start + len(times) * ticks.size, ticks.size)
-            instants = np.array((times, starts), np.uint64).T
-            for channel, offset in zip(ticks.channels, ticks.offsets):
-                pieces.setdefault(channel, []).append(
-                    instants + np.array((0, offset), np.uint64))
-        return [(channel, _in_order(pieces[channel])) for channel in sorted(pieces)]
+            entries = np.empty((len(ticks.channels), len(times), 2), np.uint64)
+            entries[:, :, 0] = times
+            entries[:, :, 1] = np.add.outer(
+                ticks.offsets, start + ticks.size * np.arange(len(times)))
+            for channel, own in zip(ticks.channels, entries):
+                pieces.setdefault(channel, []).append(own)
+        is_sorted = not any(stretch.ticks.repeats for stretch in self._stretches)
+        return [(channel, _joined(pieces[channel], is_sorted)) for channel in sorted(pieces)]
 
 
-def _in_order(pieces: Sequence[Entries]) -> Entries:
+def _joined(pieces: Sequence[Entries], is_sorted: bool) -> Entries:
+    """Return the entries of a channel in the order of the file."""
     if len(pieces) == 1:
         return pieces[0]
     entries = np.concatenate(pieces)
-    return entries[np.argsort(entries[:, 1])]
+    return entries if is_sorted else entries[np.argsort(entries[:, 1])]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.bag.mcap_file import McapFile
-from isa_ros.bag.message_chunk import Chunk, Room
+from isa_ros.bag.message_chunk import Buffers, Chunk, Room
 from isa_ros.bag.metadata import Counts, NO_START, storage_metadata, TopicEntry
 from isa_ros.bag.packed import Layout
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
@@ -54,10 +54,12 @@ class PartWriter:
     Every method that writes, and `check`, raises an OSError.
     """
 
-    def __init__(self, path: Path, number: int, head: Head, compression: str) -> None:
+    def __init__(
+            self, path: Path, number: int, head: Head, compression: str,
+            buffers: Buffers) -> None:
         self.path = path
         self._number = number
-        self._file = McapFile(path, LIBRARY, compression)
+        self._file = McapFile(path, LIBRARY, compression, buffers)
         self._is_finished = False
         self._start_ns, self._end_ns = NO_START, NO_START
         self._counts = [0] * len(head.topics)

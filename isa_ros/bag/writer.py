@@ -17,7 +17,7 @@ import time
 from types import TracebackType
 
 from isa_ros.bag.directory import make_directory
-from isa_ros.bag.message_chunk import Chunk, Room
+from isa_ros.bag.message_chunk import Buffers, Chunk, Room
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
 from isa_ros.bag.packed import Layout
 from isa_ros.bag.part_writer import Head, PartWriter
@@ -29,7 +29,7 @@ from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
 
 
-METADATA_PERIOD_S = 1.0
+METADATA_PERIOD_S = 30.0
 """Host time between two writings of metadata.yaml; readers need it only at the end."""
 
 
@@ -70,12 +70,13 @@ class BagWriter:
         if is_synced:
             sync_directory(directory.parent)
         self._parts: list[PartWriter] = []
+        self._buffers = Buffers()
         self._is_full = False
         self._is_closed = False
         self._error: RunError | None = None
         self._thread = ThreadPoolExecutor(1, 'recorder')
         self._writing: Future[None] | None = None
-        self._metadata_due = 0.0
+        self._metadata_due = time.monotonic() + METADATA_PERIOD_S
         try:
             self._begin_part()
         except OSError as error:
@@ -145,8 +146,13 @@ class BagWriter:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
     def _prepare(self, begins_part: bool) -> None:
-        """Raise the error of a chunk that was written; begin the next file where one is due."""
-        if self._writing is not None and self._writing.done():
+        """
+        Raise the error of a chunk that was written; begin the next file where one is due.
+
+        With a split size this needs that of the file, and waits for the chunk.
+        """
+        if self._writing is not None and (
+                self._storage.split_bytes is not None or self._writing.done()):
             self._end_writing()
         if self._is_full and begins_part:
             self._begin_part()
@@ -157,8 +163,6 @@ class BagWriter:
             return
         self._end_writing()
         self._writing = self._thread.submit(self._write, self._parts[-1], chunk)
-        if self._storage.split_bytes is not None:  # the next tick needs the file's size
-            self._end_writing()
 
     def close(self) -> None:
         """
@@ -225,7 +229,7 @@ class BagWriter:
             self._check_parts()
         number = len(self._parts)
         self._parts.append(PartWriter(
-            self._path(number), number, self._head, self._storage.compression))
+            self._path(number), number, self._head, self._storage.compression, self._buffers))
         self._is_full = False
         if self._is_synced:
             self._parts[-1].sync()

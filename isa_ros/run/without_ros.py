@@ -17,4 +17,5 @@ def run_without_ros(
     surroundings = surroundings_of(session.run)
     transport = calling(
         session.run, InProcess(group_of(session.run), surroundings.starts()))
+    session.freeze_objects()
     record(session, transport, surroundings, lambda topics: Outlets(), report, should_stop)

@@ -155,14 +155,16 @@ def test_an_open_stretch_is_not_in_the_bag(writer):
 
 
 def test_a_lost_file_is_a_run_error_of_the_next_stretch(writer):
-    writer.path.unlink()
-    for tick in range(2):
-        room = writer.open_stretch(of_bytes(2 * CHUNK_BYTES), tick * STEP_NS, STEP_NS)
-        append(room.buffer, room.at, Packed.of([(0, bytes(2 * CHUNK_BYTES))]).block,
-               of_bytes(2 * CHUNK_BYTES), tick, tick * STEP_NS)
-        if tick == 0:
-            writer.close_stretch(1)
-    with pytest.raises(RunError, match='rig_0.mcap: cannot record, the file was removed'):
+    """When it is opened or closed: the chunk before is written meanwhile."""
+    large = Packed.of([(0, bytes(2 * CHUNK_BYTES))])
+
+    def write(tick):
+        room = writer.open_stretch(large.layout, tick * STEP_NS, STEP_NS)
+        append(room.buffer, room.at, large.block, large.layout, tick, tick * STEP_NS)
         writer.close_stretch(1)
+    writer.path.unlink()
+    write(0)
+    with pytest.raises(RunError, match='rig_0.mcap: cannot record, the file was removed'):
+        write(1)
     with pytest.raises(RunError, match='cannot record'):
         writer.open_stretch(of_bytes(8), 2 * STEP_NS, STEP_NS)

@@ -1,5 +1,7 @@
 """What is checked of a request before anything is started."""
 
+from collections.abc import Callable
+import gc
 from pathlib import Path
 
 from isa_ros.bag.reader import Bag
@@ -10,7 +12,8 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
-from isa_ros.run.session import prepare
+from isa_ros.run.session import prepare, Session
+from isa_ros.run.without_ros import run_without_ros
 import pytest
 from tests.bag.recorded import record
 from tests.ros.domains import held_domain
@@ -90,3 +93,21 @@ def test_a_continued_run_and_its_replay_begin_with_every_device(
              if message.topic.endswith('/device')]
     assert ticks == [next(Bag(rest).messages()).sequence]
     assert replay(Bag(rest)).is_equal
+
+
+@pytest.mark.parametrize('is_alone', [True, False])
+def test_a_run_without_ros_freezes_the_objects_of_a_program_of_its_own(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_alone: bool):
+    """Before its first tick; from Python, the objects are another program's."""
+    seen: list[str] = []
+    monkeypatch.setattr(gc, 'freeze', lambda: seen.append('frozen'))
+
+    def opened(session: Session):
+        seen.append('begun')
+        return own(session)
+    own: Callable[[Session], object] = Session.opened_source
+    monkeypatch.setattr(Session, 'opened_source', opened)
+    run_without_ros(prepare(Request(
+        config=RIG, out=tmp_path / 'bag', duration_s=0.002, is_alone=is_alone)),
+        None, lambda: False)
+    assert seen == ['frozen', 'begun'][not is_alone:]

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-import gc
 
 from isa_ros.actuator.actuator import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
@@ -56,7 +55,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
             session.run.names_here(request.elsewhere), request.all_changes)
         with Children(
                 processes, request.namespace, _work if request.is_alone else None) as children:
-            _freeze_objects(session)
+            session.freeze_objects()
             with _node(request.namespace) as node:
                 _coordinate(node, session, surroundings, participants, report, should_stop,
                             children.lost)
@@ -65,12 +64,6 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
 def _refuse_undiscovered(session: Session, otherwise: str = '') -> None:
     names = [actuator.name for actuator in session.run.actuators]
     refuse_off(', '.join([*names, *session.run.controllers]), otherwise)
-
-
-def _freeze_objects(session: Session) -> None:
-    """Exclude the loaded objects from garbage collection, which would pause a run for 60 ms."""
-    if session.request.is_alone:
-        gc.freeze()
 
 
 def _work(arguments: Sequence[str]) -> int:
@@ -105,7 +98,7 @@ def coordinate(
     _refuse_undiscovered(session, '; or set in_process:=true')
     surroundings = surroundings_of(session.run)
     participants = _participants(session, surroundings)
-    _freeze_objects(session)
+    session.freeze_objects()
     _coordinate(node, session, surroundings, participants, report, should_stop, _none_lost)
 
 
@@ -160,7 +153,7 @@ def coordinate_locally(
         refuse_off(', '.join(session.run.controllers))
     surroundings = surroundings_of(session.run)
     participants = _participants(session, surroundings, are_here=True)
-    _freeze_objects(session)
+    session.freeze_objects()
     group = group_of(session.run)
     timing = timing_of(session.run)
     actuators = []
