@@ -69,9 +69,15 @@ def entry_of(function: Any, kind: Any) -> Any:
     return _kept(numba.njit(**_OPTIONS)(entry))
 
 
-def address_of(entry: Any) -> int:
-    """Return the address of an entry's machine code; it is compiled or loaded if need be."""
+def compiled_entry(entry: Any) -> Any:
+    """Return the compiled version of an entry; it is compiled or loaded if need be."""
     entry.compile((TABLE,))
     made, = entry.overloads.values()
+    return made
+
+
+def address_of(entry: Any) -> int:
+    """Return the address of an entry's machine code; it is compiled or loaded if need be."""
+    made = compiled_entry(entry)
     address: int = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
     return address

@@ -1,0 +1,162 @@
+"""
+Kernels as an object or a library of their own, for programs without Python.
+
+An object is position-independent and has no undefined symbol: what machine code of kernels may
+call of C is in it (`isa_ros.core.object_runtime`), and references to Python stand on paths that no
+kernel takes and are removed. Its machine code gives the same bytes as that compiled for Python:
+the same instructions of LLVM, which nothing may reorder or contract.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+import shutil
+import subprocess
+import tempfile
+from typing import Any, NamedTuple
+
+from isa_ros.core.elf import undefined_symbols
+from isa_ros.core.kernel import compiled_entry
+from isa_ros.core.object_runtime import RUNTIME
+from isa_ros.errors import ConfigError
+import llvmlite.binding as llvm
+
+
+class Target(NamedTuple):
+    """A kind of processor, as it is named, and as LLVM names it."""
+
+    name: str
+    triple: str
+    cpu: str
+
+
+TARGETS: Mapping[str, Target] = {target.name: target for target in (
+    Target('x86-64-v3', 'x86_64-unknown-linux-gnu', 'x86-64-v3'),
+    Target('x86-64', 'x86_64-unknown-linux-gnu', 'x86-64'),
+    Target('aarch64', 'aarch64-unknown-linux-gnu', 'generic'))}
+"""By name; of one architecture the fastest first."""
+_V3 = ('avx2', 'bmi', 'bmi2', 'f16c', 'fma', 'lzcnt', 'movbe')
+"""What x86-64-v3 has beyond x86-64, as LLVM names it."""
+
+
+def own_target() -> Target:
+    """
+    Return the fastest target whose code runs on this machine.
+
+    Raises
+    ------
+    ConfigError
+        None does.
+
+    """
+    architecture = llvm.get_process_triple().partition('-')[0]
+    features = llvm.get_host_cpu_features()
+    for target in TARGETS.values():
+        is_missing = target.cpu == 'x86-64-v3' and not all(map(features.get, _V3))
+        if target.triple.startswith(f'{architecture}-') and not is_missing:
+            return target
+    raise ConfigError(f'processor {architecture}: no target, valid: {", ".join(TARGETS)}')
+
+
+def object_of(entries: Mapping[str, Any], target: Target) -> bytes:
+    """
+    Return the object file (ELF) of entries, `isa_ros.core.kernel.entry_of`, by exported names.
+
+    Each has the C signature ``int64_t name(const int64_t *table)``; all else is internal. Entries
+    that are neither compiled nor kept are compiled, and so kept.
+
+    Raises
+    ------
+    ConfigError
+        The object would have undefined symbols; they are named.
+
+    """
+    machine = _machine(target)
+    whole = _retargeted(llvm.parse_assembly(RUNTIME), target, machine)
+    for name, entry in entries.items():
+        whole.link_in(_retargeted(_module_of(name, entry), target, machine))
+    _remove_unused(whole, machine)
+    undefined = _foreign_instructions(whole, target)
+    code: bytes = b'' if undefined else machine.emit_object(whole)
+    undefined = undefined or undefined_symbols(code)
+    if undefined:
+        raise ConfigError(
+            f'object of {", ".join(entries)}: undefined {", ".join(undefined)}, must have none')
+    return code
+
+
+def _foreign_instructions(module: Any, target: Target) -> list[str]:
+    """Return the names of instructions that only other processors have: LLVM aborts at them."""
+    own = 'x86' if target.triple.startswith('x86') else 'aarch64'
+    return [function.name for function in module.functions
+            if function.name.startswith(('llvm.x86.', 'llvm.aarch64.'))
+            and not function.name.startswith(f'llvm.{own}.')]
+
+
+def assembled(text: str, target: Target) -> bytes:
+    """Return the object file of a text of LLVM as it is."""
+    machine = _machine(target)
+    code: bytes = machine.emit_object(_retargeted(llvm.parse_assembly(text), target, machine))
+    return code
+
+
+def _machine(target: Target) -> Any:
+    """Return LLVM's machine for a target."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    return llvm.Target.from_triple(target.triple).create_target_machine(
+        cpu=target.cpu, opt=3, reloc='pic', codemodel='default')
+
+
+def _module_of(name: str, entry: Any) -> Any:
+    """Return a copy of an entry's module, in which only the entry, renamed, is seen outside."""
+    made = compiled_entry(entry)
+    module = made.library._get_module_for_linking().clone()
+    wrapper = made.fndesc.llvm_cfunc_wrapper_name
+    for function in module.functions:
+        if function.name == wrapper:
+            function.name, function.linkage = name, 'external'
+        elif not function.is_declaration:
+            function.linkage = 'internal'
+    for variable in module.global_variables:
+        if not variable.is_declaration:
+            variable.linkage = 'internal'
+    return module
+
+
+def _retargeted(module: Any, target: Target, machine: Any) -> Any:
+    """Return a module as one for another machine."""
+    module.triple, module.data_layout = target.triple, str(machine.target_data)
+    return module
+
+
+def _remove_unused(module: Any, machine: Any) -> None:
+    """Remove what nothing refers to; the code was optimised when it was compiled."""
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
+
+
+def library_of(objects: Sequence[bytes], out: Path, compiler: str = 'cc') -> None:
+    """
+    Write a shared library of objects to ``out``; it depends on no other library.
+
+    Raises
+    ------
+    ConfigError
+        There is no such C compiler, or it fails, with its first line.
+
+    """
+    found = shutil.which(compiler)
+    if found is None:
+        raise ConfigError(f'{out}: no C compiler {compiler} to link it with')
+    with tempfile.TemporaryDirectory() as directory:
+        paths = [Path(directory, f'{k}.o') for k in range(len(objects))]
+        for path, code in zip(paths, objects):
+            path.write_bytes(code)
+        done = subprocess.run(
+            [found, '-shared', '-nostdlib', '-Wl,--no-undefined', '-Wl,-z,noexecstack',
+             f'-Wl,-soname,{out.name}', '-o', str(out), *map(str, paths)],
+            capture_output=True, text=True)
+    if done.returncode:
+        first = next(iter(done.stderr.splitlines()), f'exit code {done.returncode}')
+        raise ConfigError(f'{out}: {compiler} cannot link it: {first}')

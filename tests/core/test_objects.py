@@ -1,0 +1,190 @@
+"""Objects and libraries of kernels: nothing undefined, the same bytes as from Python."""
+
+import ctypes
+import math
+from pathlib import Path
+import subprocess
+
+from isa_ros.core.bound import Bound, table_of
+from isa_ros.core.elf import Symbol, symbols, undefined_symbols
+from isa_ros.core.kernel import entry_of, kernel
+from isa_ros.core.objects import (
+    assembled, library_of, object_of, own_target, Target, TARGETS)
+from isa_ros.core.pointers import kind_of
+from isa_ros.errors import ConfigError
+import numpy as np
+import pytest
+from tests.core.test_bound import count, expected, memory, move, Rows
+
+MACHINES = {'x86-64': 62, 'x86-64-v3': 62, 'aarch64': 183}      # numbers of ELF's header
+
+
+@kernel
+def call_all(own):
+    """Call what machine code has as calls of C; copy and clear rows."""
+    numbers = own.numbers
+    total = 0.0
+    for k in range(8):
+        value = numbers[k]
+        total += math.frexp(value)[0] + math.floor(value) + value % 0.37 + math.sqrt(abs(value))
+    numbers[8] = total
+    for k in range(64):
+        numbers[64 + k] = numbers[k]
+    numbers[:64] = 0.0
+    return -7
+
+
+def numbers():
+    """Return a memory of distinct numbers."""
+    return Rows(np.linspace(-3.1, 8.3, 128))
+
+
+@pytest.fixture(scope='module')
+def entries():
+    """Return three entries by the names they get."""
+    return {'isa_move': entry_of(move, kind_of(memory())),
+            'isa_count': entry_of(count, kind_of(Rows(np.zeros(1, np.int64)))),
+            'isa_call': entry_of(call_all, kind_of(numbers()))}
+
+
+def loaded(out, name):
+    """Return a function of a library that takes a memory."""
+    function = getattr(ctypes.CDLL(str(out)), name)
+    function.restype = ctypes.c_int64
+    function.argtypes = [ctypes.c_void_p]
+    return lambda own: function(table_of(own).ctypes.data)
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_only_the_entries_are_seen(entries, name):
+    code = object_of(entries, TARGETS[name])
+    assert code[:6] == b'\x7fELF\x02\x01' and code[18] == MACHINES[name]
+    seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
+    assert seen == {*entries, 'floor', 'ceil', 'fmod', 'numba_frexp', 'memset', 'memcpy', 'memmove'}
+    assert undefined_symbols(code) == []
+
+
+@pytest.mark.parametrize('name', ['x86-64', own_target().name])
+def test_a_library_gives_the_same_bytes(entries, name, tmp_path):
+    out = tmp_path / 'lib.so'
+    library_of([object_of(entries, TARGETS[name])], out)
+    own, other = numbers(), numbers()
+    assert loaded(out, 'isa_call')(own) == Bound(call_all, other).run() == -7
+    assert own.numbers.tobytes() == other.numbers.tobytes()
+    assert not own.numbers[:64].any() and own.numbers[72] not in (0.0, numbers().numbers[72])
+    masses = memory()
+    found = [loaded(out, 'isa_move')(masses) for _ in range(6)]
+    places, sums = expected(6)
+    assert found == [0, 0, 1, 1, 1, 2]
+    assert masses.masses['x'].tolist() == places and masses.table[:, 2].tolist() == sums
+
+
+def test_a_library_depends_on_nothing(entries, tmp_path):
+    out = tmp_path / 'lib.so'
+    library_of([object_of(entries, own_target())], out)
+    dynamic = subprocess.run(['readelf', '-d', out], capture_output=True, text=True, check=True)
+    assert 'NEEDED' not in dynamic.stdout and 'TEXTREL' not in dynamic.stdout
+    exported = subprocess.run(['nm', '-D', out], capture_output=True, text=True, check=True)
+    assert sorted(line.split()[-1] for line in exported.stdout.splitlines()) == sorted(entries)
+
+
+def test_two_objects_in_a_library(entries, tmp_path):
+    out = tmp_path / 'lib.so'
+    library_of([object_of({name: entry}, own_target()) for name, entry in entries.items()], out)
+    calls = Rows(np.zeros(1, np.int64))
+    assert loaded(out, 'isa_count')(calls) == 0 and calls.numbers[0] == 1
+
+
+def test_symbols_of_an_object():
+    code = assembled('declare double @f(double)\n define internal void @own() { ret void }\n'
+                     'define double @g(double %x) { call void @own() \n'
+                     ' %y = call double @f(double %x) ret double %y }', TARGETS['x86-64'])
+    found = {symbol.name: symbol for symbol in symbols(code)}
+    assert found['f'] == Symbol('f', False, False) and found['g'] == Symbol('g', False, True)
+    assert found['own'] == Symbol('own', True, True)
+    assert undefined_symbols(code) == ['f']
+
+
+@kernel
+def take_sine(own):
+    """Call a function that no object has."""
+    own.numbers[0] = math.sin(own.numbers[0])
+    return 0
+
+
+def test_undefined_symbols_are_refused():
+    with pytest.raises(ConfigError, match=r'^object of isa_sine: undefined sin, must have none$'):
+        object_of({'isa_sine': entry_of(take_sine, kind_of(numbers()))}, own_target())
+
+
+@kernel
+def share_array(own):
+    """Hold a view in a way that counts who refers to it, with an instruction of this processor."""
+    half = own.numbers.copy()
+    own.numbers[:64] = half[32:96]
+    return len(half)
+
+
+@pytest.mark.parametrize('name', ['x86-64', 'aarch64'])
+def test_kernels_that_allocate_are_refused(name):
+    """LLVM ends the process where another processor lacks an instruction."""
+    with pytest.raises(ConfigError, match=r'^object of isa_half: undefined .+, must have none$'):
+        object_of({'isa_half': entry_of(share_array, kind_of(numbers()))}, TARGETS[name])
+
+
+def test_without_a_compiler(tmp_path):
+    out = tmp_path / 'lib.so'
+    with pytest.raises(ConfigError, match=r'lib\.so: no C compiler none-such to link it with$'):
+        library_of([], out, compiler='none-such')
+
+
+def test_a_linker_that_fails(entries, tmp_path):
+    other = next(target for target in TARGETS.values() if target.triple != own_target().triple)
+    with pytest.raises(ConfigError, match=r'lib\.so: cc cannot link it: .+$'):
+        library_of([object_of({'isa_count': entries['isa_count']}, other)], tmp_path / 'lib.so')
+
+
+def test_the_own_target(monkeypatch):
+    from isa_ros.core.objects import llvm
+    features = dict.fromkeys(('avx2', 'bmi', 'bmi2', 'f16c', 'fma', 'lzcnt', 'movbe'), True)
+    monkeypatch.setattr(llvm, 'get_host_cpu_features', lambda: features)
+    monkeypatch.setattr(llvm, 'get_process_triple', lambda: 'x86_64-unknown-linux-gnu')
+    assert own_target().name == 'x86-64-v3'
+    for feature in features:
+        monkeypatch.setattr(llvm, 'get_host_cpu_features',
+                            lambda left=feature: {**features, left: False})
+        assert own_target().name == 'x86-64'
+    monkeypatch.setattr(llvm, 'get_process_triple', lambda: 'aarch64-unknown-linux-gnu')
+    assert own_target() == Target('aarch64', 'aarch64-unknown-linux-gnu', 'generic')
+    monkeypatch.setattr(llvm, 'get_process_triple', lambda: 'riscv64-unknown-linux-gnu')
+    with pytest.raises(ConfigError, match='processor riscv64: no target, valid: x86-64-v3'):
+        own_target()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('name', ['x86-64', own_target().name])
+def test_a_tick_is_the_same_bytes(name, tmp_path):
+    """All actuators of the leg over 100 ticks with steps of their setpoints."""
+    from isa_ros.actuator.ticking import tick_kernel
+    from isa_ros.config.assembly import group_of
+    from isa_ros.config.paths import CONFIG, find
+    from isa_ros.config.runs.run_file import load_run
+    from isa_ros.core.signals import HAS_SETPOINT
+    out = Path(tmp_path, 'lib.so')
+    library_of([object_of({'isa_tick': tick_kernel()}, TARGETS[name])], out)
+    tick = loaded(out, 'isa_tick')
+    groups = [group_of(load_run(find('leg', CONFIG))) for _ in range(2)]
+    for k in range(100):
+        found = []
+        for group in groups:
+            own = group.ticked
+            own.ports['supply_pressure'] = 20.7e6
+            own.ports['x0'] = own.memory.samples['position']
+            own.commands['kinds'] = HAS_SETPOINT if k % 20 == 0 else 0
+            own.commands['position'] = own.memory.samples['position'] + 1e-3 * (k % 7 - 3)
+            found.append(group._tick.run() if group is groups[0] else tick(own))
+        assert found == [0, 0], k
+    first, second = (group.ticked.memory for group in groups)
+    assert np.ptp(first.samples['spool']) > 0.0
+    for name, own, other in zip(first._fields, first, second):
+        assert own.tobytes() == other.tobytes(), name
