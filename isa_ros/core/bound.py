@@ -10,7 +10,7 @@ it too.
 
 from collections.abc import Callable, Iterator, Sequence
 import ctypes
-from typing import Any
+from typing import Any, NamedTuple
 
 from isa_ros.core.kernel import address_of, entry_of, IS_COMPILED, kernel
 from isa_ros.core.pointers import call_at, kind_of
@@ -78,25 +78,22 @@ def _with_attributes(memory: Any) -> Any:
 @kernel
 def run_rounds(rounds, program):
     """
-    Run the bound kernels of a program one after the other, in at most so many rounds.
+    Run the bound kernels of a program one after the other, in so many rounds.
 
-    ``program`` has address and table of each, (n, 2). A round in which one of them returned
-    another number than 0 is the last. Return the rounds that were run, the place of the first
-    such kernel or -1, and its number.
+    ``program`` has address and table of each, (n, 2). One that returns another number than 0 is
+    the last. Return the rounds that were finished, the place of that kernel or -1, and its
+    number.
     """
     for done in range(rounds):
-        place, found = -1, 0
         for k in range(len(program)):
-            given = call_at(program[k, 0], program[k, 1])
-            if given != 0 and place < 0:
-                place, found = k, given
-        if place >= 0:
-            return done + 1, place, found
+            found = call_at(program[k, 0], program[k, 1])
+            if found != 0:
+                return done, k, found
     return rounds, -1, 0
 
 
 class Program:
-    """Bound kernels that are run together, in rounds."""
+    """Bound kernels that are run one after the other, in rounds."""
 
     def __init__(self, parts: Sequence[Bound]) -> None:
         self.parts = tuple(parts)
@@ -104,13 +101,40 @@ class Program:
             [(part.address, part.table.ctypes.data) for part in parts], np.int64).reshape(-1, 2)
 
     def run(self, rounds: int) -> tuple[int, int, int]:
-        """Run so many rounds, or fewer; return as `run_rounds`."""
+        """Run so many rounds; a kernel that finds something ends them, as in `run_rounds`."""
         if IS_COMPILED:
             done, place, found = run_rounds(rounds, self._program)
             return int(done), int(place), int(found)
         for done in range(rounds):
-            found = [part.run() for part in self.parts]
-            for place, given in enumerate(found):
-                if given:
-                    return done + 1, place, given
+            for place, part in enumerate(self.parts):
+                found = part.run()
+                if found:
+                    return done, place, found
         return rounds, -1, 0
+
+
+class Part(NamedTuple):
+    """A bound kernel in a program, and what is called with a number other than 0 of it."""
+
+    bound: Bound
+    found: Callable[[int], object]
+
+
+class Rebound:
+    """
+    A kernel over a memory of which some arrays are given at each call.
+
+    ``memory`` returns the memory for them. As long as they are the same, one `Bound` is used.
+    """
+
+    def __init__(self, function: Any, memory: Callable[..., Any]) -> None:
+        self._function, self._memory = function, memory
+        self._given: tuple[NDArray[Any], ...] = ()
+        self._bound: Bound | None = None
+
+    def to(self, *given: NDArray[Any]) -> Bound:
+        """Return the kernel over the memory with these arrays."""
+        if self._bound is None or any(
+                array is not other for array, other in zip(given, self._given, strict=True)):
+            self._given, self._bound = given, Bound(self._function, self._memory(*given))
+        return self._bound

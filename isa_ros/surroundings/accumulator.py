@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.elementary import exp, expm1, log
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, kernel_function
 from isa_ros.core.parameter import fault, nested, parameter, Parameters
 from isa_ros.core.units import LITRE, LPM, MPA
 from isa_ros.surroundings.dump import (
@@ -129,14 +129,14 @@ def supply_rates(pressure, pump_flow, drawn, opening, supply):
             (demand - pump_flow) / supply.lag, pressure * pump_flow, pressure * (relief + leak))
 
 
-def accumulator_node(record: np.recarray, state: np.recarray) -> FedNode:
+@kernel_function
+def accumulator_node(supply, state):
     """
-    Return the line of a `SUPPLY` and its state as the node of its actuators  (C15).
+    Return the line of a `SUPPLY` and its `SUPPLY_SAMPLE` as the `FedNode` of its actuators  (C15).
 
     The pump's flow follows its lag by itself; relief, leak and dump valve follow the pressure.
     """
-    p, dump = state.pressure, record.dump_valve
-    supply, dumping = record, 0.0
+    p, dump, dumping = state.pressure, supply.dump_valve, 0.0
     rise, pump_rate, _, _ = supply_rates(p, state.pump_flow, 0.0, state.dump_opening, supply)
     c = capacitance(p, supply)
     if dump.is_there > 0.0 and state.dump_opening > 0.0 and p > 0.0:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
 
+from isa_ros.core.bound import Rebound
 from isa_ros.core.parameter import Parameters
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +71,35 @@ class Body(Protocol):
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot` of a body of the same configuration."""
+        ...
+
+
+@runtime_checkable
+class BoundBody(Protocol):
+    """A body of kernels: what a compiled loop of ticks calls instead of `Body`."""
+
+    @property
+    def filling(self) -> Rebound:
+        """Return what fills its rows of given ports for the next tick."""
+        ...
+
+    @property
+    def advancing(self) -> Rebound:
+        """Return what advances by one tick with given replies."""
+        ...
+
+    def refuse(self, found: int) -> None:
+        """
+        Take what `advancing` has returned; 0: nothing was found.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+        RunError
+            The body ends the run.
+
+        """
         ...
 
 

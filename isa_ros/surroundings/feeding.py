@@ -37,7 +37,7 @@ def made(own: SupplyCircuit, step_ns: int, samples: np.ndarray) -> Supply | Circ
     """Return a supply or circuit over a run, whose samples are these rows."""
     if isinstance(own.sheet, CircuitSupply):
         return Circuit(own.sheet, step_ns, own.fed, samples, own.name)
-    return Supply(own.sheet, step_ns, own.flow_slope, samples, own.name)
+    return Supply(own.sheet, step_ns, own.flow_slope, samples, own.name, own.rows)
 
 
 def index_of(rows: Sequence[int]) -> slice | np.ndarray:

@@ -14,23 +14,27 @@ valve `isa_ros.surroundings.dump`. Equation E9.
 Neglected: length and resistance of the pressure line, heat.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
+from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.fields import Field, record_type
-from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, parameter, Parameters
 from isa_ros.core.record import floats
-from isa_ros.core.signals import Records
+from isa_ros.core.signals import LOAD_REPLY, Records, SUPPLY_REPLY
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
+from isa_ros.surroundings import supply_tick as tick
 from isa_ros.surroundings.accumulator import (
-    accumulator_node, AccumulatorSupply, capacitance, supply_advance, supply_record)
+    accumulator_node, AccumulatorSupply, capacitance, SUPPLY, supply_record)
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
-from isa_ros.surroundings.dump import DUMP, dump_fields, LagDump, NoneDump, opened_after
+from isa_ros.surroundings.dump import dump_fields, LagDump, NoneDump
 from isa_ros.surroundings.return_line import (
-    HeldReturn, return_advance, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
+    HeldReturn, RETURN_LINE, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
 from isa_ros.surroundings.supply_port import FedNode, MovingPort, PORT_STEPS
+from isa_ros.surroundings.supply_tick import held_pressure, SupplyRecords
 import numpy as np
 
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
@@ -86,28 +90,13 @@ def saved_states(samples: Records) -> bytes:
     return floats(samples)[:, :len(SUPPLY_STATE.names or ())].tobytes()
 
 
-@kernel
-def add_oil(drawn, returned, paid, seconds, states):
-    """
-    Add the volumes of one tick (m3), and their energy  (E1).
-
-    ``paid`` is that of the oil drawn, J; the pressure of the return is held over the tick.
-    """
-    state = states[0]
-    energy = paid - state.return_pressure * returned
-    state.drawn += drawn
-    state.returned += returned
-    state.power = energy / seconds
-    state.peak_power = max(state.peak_power, state.power)
-    state.energy += energy
-
-
 class Supply:
     """
     One supply over a run.
 
     ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa; ``state`` is the supply's
-    `SUPPLY_SAMPLE` row, shape (1,); None: a new row is made. ``name`` is used in errors.
+    `SUPPLY_SAMPLE` row, shape (1,); None: a new row is made. ``name`` is used in errors, ``rows``
+    are those of its actuators.
 
     Raises
     ------
@@ -119,22 +108,49 @@ class Supply:
 
     def __init__(
             self, sheet: SupplySheet, step_ns: int, flow_slope: float,
-            state: np.ndarray | None = None, name: str = 'supply') -> None:
+            state: np.ndarray | None = None, name: str = 'supply',
+            rows: Sequence[int] = ()) -> None:
         self._name = name
         self._step = step_ns * 1e-9
         self._sheet = sheet
         self._flow_slope = flow_slope
-        self._substeps = round(self._step / SUPPLY_STEP)
         self.state = np.zeros(1, SUPPLY_SAMPLE) if state is None else state
         self.state['pressure'] = sheet.pressure_mpa * MPA
         self.state['return_pressure'] = sheet.return_pressure_mpa * MPA
+        self.rows = np.array(rows, np.int64)
+        """Of its actuators."""
+        self.records = self._records(sheet)
+        """Its constants; changed in place."""
         if not isinstance(sheet.dump, NoneDump):
             self.state['dump_opening'] = sheet.dump.opened
             self._hold()
-        self._record, self._line = self._records(sheet)
         self.has_port = isinstance(sheet, AccumulatorSupply) and isinstance(
             sheet.port, MovingPort)
         """Whether its pressure moves within a tick."""
+        self.filling = Rebound(
+            tick.fill_pressures,
+            lambda ports: tick.SupplyPressures(self.state, self.rows, ports))
+        """Of the ports: fills the pressures of its actuators."""
+        self.feeding = Rebound(tick.fill_line, lambda answers, feeds: tick.SupplyFeeds(
+            self.state, self.records.supply, self.rows, answers, feeds))
+        """Of last answers and ports of a supply that has a port: fills the latter."""
+        self.advancing = Rebound(tick.advance, lambda replies, answers: self._tick(
+            self.rows, replies, answers))
+        """Of replies and answers, or none where the pressure was held: advances by one tick."""
+        self._given = np.zeros(1, LOAD_REPLY), np.zeros(1, SUPPLY_REPLY)
+
+    def _tick(self, rows: np.ndarray, replies: np.ndarray, answers: np.ndarray
+              ) -> tick.SupplyTick:
+        return tick.SupplyTick(
+            self.state, self.records, np.array([self._step]), rows, replies, answers)
+
+    @cached_property
+    def _advancing_by(self) -> tuple[Bound, Bound]:
+        """Return what advances with the volumes of one row, the pressure held or paid."""
+        replies, answers = self._given
+        first = np.zeros(1, np.int64)
+        return (Bound(tick.advance, self._tick(first, replies, answers[:0])),
+                Bound(tick.advance, self._tick(first, replies, answers)))
 
     def change(self, sheet: SupplySheet) -> None:
         """
@@ -144,25 +160,32 @@ class Supply:
         Raises as the class.
         """
         self._sheet = sheet
-        self._record, self._line = self._records(sheet)
-        if self._record is None:
+        for own, new in zip(self.records, self._records(sheet)):
+            own[:] = new
+        if len(self.records.ideal):
             self._hold()
-        if self._line is None:
+        if not len(self.records.line):
             self.state['return_pressure'] = sheet.return_pressure_mpa * MPA
 
     def _hold(self) -> None:
-        """Give an ideal supply its pressure  (C14)."""
-        own, z = self._sheet, float(self.state['dump_opening'][0])
-        self.state['pressure'] = (
-            own.pressure_mpa - z * (own.pressure_mpa - own.return_pressure_mpa)) * MPA
+        """Give an ideal supply its pressure."""
+        ideal = self._ideal(self._sheet).view(np.recarray)[0]
+        self.state['pressure'] = held_pressure(float(self.state['dump_opening'][0]), ideal)
+
+    def _ideal(self, sheet: SupplySheet) -> np.ndarray:
+        """Return a sheet as an `isa_ros.surroundings.supply_tick.IDEAL`, (1,)."""
+        assert not isinstance(sheet, CircuitSupply)
+        return np.array([(sheet.pressure_mpa, sheet.return_pressure_mpa,
+                          dump_fields(sheet.dump, self._step))], tick.IDEAL)
 
     def refuse(self, sheet: SupplySheet) -> None:
         """Refuse a sheet with which `change` cannot continue; raises as the class."""
         self._records(sheet)
 
-    def _records(self, sheet: SupplySheet) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """Return the `SUPPLY` and the `RETURN_LINE` of a sheet, None for what is ideal."""
-        supply = line = None
+    def _records(self, sheet: SupplySheet) -> SupplyRecords:
+        """Return the records of a sheet."""
+        supply: np.ndarray = np.zeros(0, SUPPLY)
+        ideal, line = np.zeros(0, tick.IDEAL), np.zeros(0, RETURN_LINE)
         if isinstance(sheet, AccumulatorSupply):
             supply = supply_record(sheet)
             if isinstance(sheet.port, MovingPort):
@@ -171,13 +194,15 @@ class Supply:
                 self._refuse_small(
                     'capacitance', capacitance(sheet.pressure_mpa * MPA, supply[0]),
                     'gas_volume_l, or let the pressure move (port: {kind: moving})')
+        else:
+            ideal = self._ideal(sheet)
         if isinstance(sheet.return_line, VolumeReturn):
             line = return_record(sheet.return_line, sheet.return_pressure_mpa * MPA)
             self._refuse_small(
                 'capacitance of the return line', float(line['c'][0]),
                 'return_line.oil_volume_l')
             self._refuse_fast(line[0])
-        return supply, line
+        return SupplyRecords(ideal, supply, line)
 
     def _refuse_small(self, what: str, c: float, key: str) -> None:
         """Refuse a capacitance whose pressure is not constant enough over a tick."""
@@ -222,9 +247,9 @@ class Supply:
 
     def nodes(self) -> list[FedNode]:
         """Return the node of its actuators where their pressure moves in a tick, or none."""
-        if self._record is None or not self.has_port:
+        if not self.has_port:
             return []
-        return [accumulator_node(self._record.view(np.recarray)[0],
+        return [accumulator_node(self.records.supply.view(np.recarray)[0],
                                  self.state.view(np.recarray)[0])]
 
     def advance(self, drawn: float, returned: float = 0.0, paid: float | None = None) -> None:
@@ -233,25 +258,11 @@ class Supply:
 
         ``paid`` is what they paid for the oil drawn, J; None: the pressure was held.
         """
-        held = self.pressure * drawn
-        add_oil(drawn, returned, held if paid is None else paid, self._step, self.state)
-        if paid is not None:
-            self.state['held_energy'] += paid - held
-        if self._record is None:
-            self.state['pump_energy'] += self.state['pressure'] * drawn
-            self._lower()
+        replies, answers = self._given
+        replies['supply_volume'], replies['return_volume'] = drawn, returned
+        held, moved = self._advancing_by
+        if paid is None:
+            held.run()
         else:
-            supply_advance(self._substeps, drawn / self._step, self._record, self.state)
-        if self._line is None:
-            self.state['return_energy'] += self.state['return_pressure'] * returned
-        else:
-            return_advance(self._substeps, returned / self._step, self._line, self.state)
-
-    def _lower(self) -> None:
-        """Let the dump of an ideal supply act over a tick  (C14)."""
-        dump = self._sheet.dump
-        if isinstance(dump, LagDump) and self.state['dump_opening'][0] != dump.opened:
-            record = np.array([dump_fields(dump, self._step)], DUMP).view(np.recarray)[0]
-            self.state['dump_opening'] = opened_after(
-                float(self.state['dump_opening'][0]), record.left, record)
-            self._hold()
+            answers['paid'] = paid
+            moved.run()

@@ -9,8 +9,10 @@ tick with the volumes drawn. Flows into the supply's node are positive. Equation
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
+from isa_ros.core.bound import Rebound
+from isa_ros.core.kernel import kernel_function
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import Records, SUPPLY_REPLY
 import numpy as np
@@ -51,34 +53,43 @@ class FedNode(NamedTuple):
 
 
 class PortedSupply(Protocol):
-    """A supply or circuit that has a port; its nodes in the order of what it feeds."""
+    """A circuit that has a port; its nodes in the order of what it feeds."""
 
     def nodes(self) -> list[FedNode]:
         """Return its nodes at the start of the next tick."""
         ...
 
 
-def fill_feeds(node: FedNode, rows: Sequence[int], last: Records, feeds: Records) -> None:
+@kernel_function
+def fill_feeds(node, rows, last, feeds):
     """
-    Fill the `SUPPLY_PORT` of the actuators at a node, by their ``rows``  (C15).
+    Fill the `SUPPLY_PORT` of the actuators at a `FedNode`, by their ``rows``  (C15).
 
     ``last`` are the `SUPPLY_REPLY` of all actuators at the end of the last tick, zeros at t = 0.
     Each assumes that the others move as it does, by the conductances of their valves  (C16): N is
     the sum of all over its own, and at most their number, which is also what a shut valve gets.
     """
-    flows, conductances = last['flow'].tolist(), last['conductance'].tolist()
-    drawn = total = 0.0
+    drawn, total, most = 0.0, 0.0, float(len(rows))
     for row in rows:
-        drawn += flows[row]
-        total += conductances[row]
-    most = float(len(rows))
+        drawn += last[row]['flow']
+        total += last[row]['conductance']
     for row in rows:
-        own, feed = conductances[row], feeds[row]
+        own, feed = last[row]['conductance'], feeds[row]
         feed['elastance'] = 1.0 / node.capacity
         feed['inflow'] = node.inflow - drawn
         feed['trend'], feed['slope'] = node.trend, node.slope
         feed['share'] = total / own if total < most * own else most
-        feed['flow'] = flows[row]
+        feed['flow'] = last[row]['flow']
+
+
+@runtime_checkable
+class FeedingSupply(Protocol):
+    """A supply that has a port and fills it by itself."""
+
+    @property
+    def feeding(self) -> Rebound:
+        """Return what fills its rows of the ports, given last answers and ports."""
+        ...
 
 
 class SupplyPorts:
@@ -90,7 +101,8 @@ class SupplyPorts:
 
     def __init__(
             self, n_actuators: int,
-            supplies: Sequence[tuple[PortedSupply, Sequence[Sequence[int]]]]) -> None:
+            supplies: Sequence[tuple[PortedSupply | FeedingSupply, Sequence[Sequence[int]]]],
+            ) -> None:
         self._supplies = supplies
         self.are_there = bool(supplies)
         """Whether a supply has one."""
@@ -100,6 +112,9 @@ class SupplyPorts:
     def fill(self, feeds: Records) -> None:
         """Fill the `SUPPLY_PORT` of the fed actuators for the next tick, (n_actuators,)."""
         for supply, groups in self._supplies:
+            if isinstance(supply, FeedingSupply):
+                supply.feeding.to(self.answers, feeds).run()
+                continue
             for node, rows in zip(supply.nodes(), groups):
                 fill_feeds(node, rows, self.answers, feeds)
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from isa_ros.core.bound import Bound, Part
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
 from isa_ros.core.parameter import check, fault, Parameters
@@ -16,12 +17,13 @@ from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.signals import SUPPLY_REPLY
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
+from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.feeding import (
     index_of, made, n_samples, summed, SupplyCircuit)
 from isa_ros.surroundings.supply import saved_states, Supply, SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import SupplyPorts
+from isa_ros.surroundings.supply_tick import Answers, keep_answers
 import numpy as np
 
 
@@ -29,6 +31,7 @@ _P = TypeVar('_P', bound=Parameters)
 
 EMERGENCY_STOP = 'emergency_stop'
 """Begins the names of the lines of groups; a supply does not have this name."""
+_NO_ANSWERS = np.zeros(0, SUPPLY_REPLY)
 OPEN = 'opened'
 """Name of the only value of a line."""
 
@@ -44,6 +47,10 @@ class _EmergencyStop(Parameters):
 def line_of(group: str) -> str:
     """Return what the names of a group's values begin with."""
     return f'{EMERGENCY_STOP}.{group}'
+
+
+def _nothing(found: int) -> None:
+    """Do nothing: it finds nothing."""
 
 
 class Surroundings:
@@ -119,7 +126,11 @@ class Surroundings:
         """
         if self._values.latch():
             self._change()
-        self._fill_pressures(ports)
+        for supply in self._supplies:
+            if isinstance(supply, Circuit):
+                supply.fill(ports)
+            else:
+                supply.filling.to(ports).run()
         for body in self.bodies.values():
             body.ports(ports)
 
@@ -209,20 +220,46 @@ class Surroundings:
         """
         for body in self.bodies.values():
             body.advance(replies)
-        drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
         energies = self._ports.take(fed)
         for supply, circuit in zip(self._supplies, self.circuits):
-            groups = circuit.groups
-            oil = ([summed(drawn, rows) for rows in groups],
-                   [summed(returned, rows) for rows in groups])
-            paid = [summed(energies, rows) for rows in groups] if energies else []
             if not isinstance(supply, Circuit):
-                is_paid = supply.has_port and paid
-                supply.advance(oil[0][0], oil[1][0], paid[0] if is_paid else None)
-            elif paid:
+                has_moved = supply.has_port and bool(energies)
+                supply.advancing.to(
+                    replies, self._ports.answers if has_moved else _NO_ANSWERS).run()
+                continue
+            groups = circuit.groups
+            oil = ([summed(replies['supply_volume'].tolist(), rows) for rows in groups],
+                   [summed(replies['return_volume'].tolist(), rows) for rows in groups])
+            paid = [summed(energies, rows) for rows in groups] if energies else []
+            if paid:
                 supply.advance_nodes(oil[0], paid, oil[1])
             else:
                 supply.advance_held(*oil)
+
+    def parts(
+            self, ports: Records, feeds: Records, replies: Records, fed: Records
+            ) -> tuple[list[Part], list[Part]] | None:
+        """
+        Return what a compiled loop calls before and after the actuators of a tick.
+
+        The rows are those of `ports`, `fill_feeds` and `advance`, which do the same. None: a
+        circuit or a body is not of kernels.
+        """
+        supplies = [own for own in self._supplies if isinstance(own, Supply)]
+        bodies = [own for own in self.bodies.values() if isinstance(own, BoundBody)]
+        if len(supplies) < len(self._supplies) or len(bodies) < len(self.bodies):
+            return None
+        filling = [*(own.filling for own in supplies), *(own.filling for own in bodies)]
+        before = [Part(own.to(ports), _nothing) for own in filling]
+        after = [Part(body.advancing.to(replies), body.refuse) for body in bodies]
+        answers = self._ports.answers
+        if self.has_supply_ports:
+            before += [Part(own.feeding.to(answers, feeds), _nothing)
+                       for own in supplies if own.has_port]
+            after.append(Part(Bound(keep_answers, Answers(fed, answers)), _nothing))
+        after += [Part(own.advancing.to(replies, answers if own.has_port else _NO_ANSWERS),
+                       _nothing) for own in supplies]
+        return before, after
 
     def snapshot(self) -> bytes:
         """

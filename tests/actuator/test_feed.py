@@ -188,9 +188,7 @@ def test_equal_actuators_and_their_supply_agree_about_its_pressure() -> None:
     E q' T^2/2 = 1.4e13 0.0065 1e-6/2 Pa, 0.5 kPa.
     """
     line = {'precharge_mpa': 60.0, 'line_volume_l': 0.05}    # no gas at these pressures
-    supply = Supply(replace(SHEET, port=MovingPort(), **line), MS, 1e-12)
-    if numba.config.DISABLE_JIT:
-        supply.state, supply._record = map(with_attributes, (supply.state, supply._record))
+    supply = Supply(replace(SHEET, port=MovingPort(), **line), MS, 1e-12, rows=(0, 1, 2))
     actuators = [actuator_of() for _ in range(3)]
     ports = SupplyPorts(3, [(supply, [[0, 1, 2]])])
     feeds, replies, fed = (np.zeros(3, of) for of in (SUPPLY_PORT, LOAD_REPLY, SUPPLY_REPLY))

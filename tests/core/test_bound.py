@@ -4,7 +4,7 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-from isa_ros.core.bound import arrays_of, Bound, Program, table_of
+from isa_ros.core.bound import arrays_of, Bound, Program, Rebound, table_of
 from isa_ros.core.kernel import kernel
 import numpy as np
 import pytest
@@ -77,27 +77,34 @@ def test_two_memories_of_a_kernel_are_apart():
     assert second.masses['x'].tolist() == [2.0, 0.0, 4.0]
 
 
-def test_a_program_ends_with_the_round_in_which_a_kernel_found_something():
+def test_a_program_ends_at_the_kernel_that_finds_something():
     own, calls = memory(), Rows(np.zeros(2, np.int64))
     after = Rows(np.zeros(1, np.int64))
     program = Program([Bound(count, calls), Bound(move, own), Bound(count, after)])
     assert program.run(2) == (2, -1, 0)
-    assert program.run(10) == (1, 1, 1)     # the first beyond 5 is that of the third round
-    assert program.run(10) == (1, 1, 1)
-    assert calls.numbers.tolist() == [4, 0] and after.numbers.tolist() == [4]
-    assert own.masses['x'].tolist() == expected(4)[0]
+    assert program.run(10) == (0, 1, 1)     # the first beyond 5 is that of the third round
+    assert calls.numbers.tolist() == [3, 0] and after.numbers.tolist() == [2]
+    own.masses['v'] = -3.0, 0.0, 0.0
+    own.masses['x'] = 9.0, 0.0, 0.0
+    assert program.run(10) == (0, 1, 1)
+    assert program.run(10) == (10, -1, 0)
+    assert calls.numbers.tolist() == [14, 0] and after.numbers.tolist() == [12]
+    assert own.masses['x'].tolist() == [9.0 - 33.0, 0.0, 0.0]
     assert Program([]).run(3) == (3, -1, 0)
-    assert program.run(0) == (0, -1, 0) and after.numbers.tolist() == [4]
+    assert program.run(0) == (0, -1, 0) and after.numbers.tolist() == [12]
 
 
-def test_of_several_that_found_something_the_first_is_told():
-    fast = memory()
-    fast.masses['v'] = 9.0
-    slow = memory()
-    slow.masses['v'] = 0.0, 0.0, 8.0
-    program = Program([Bound(move, slow), Bound(move, fast)])
-    assert program.run(5) == (1, 0, 1)
-    assert fast.masses['x'].tolist() == [9.0, 0.0, 9.0]     # it ran nevertheless
+def test_arrays_may_be_given_at_each_call():
+    own = memory()
+    rebound = Rebound(move, lambda table, last: own._replace(table=table, last=last))
+    other = own.table.copy()
+    first = rebound.to(own.table, own.last)
+    assert rebound.to(own.table, own.last) is first
+    first.run()
+    second = rebound.to(other, own.last)
+    assert second is not first and rebound.to(other, own.last) is second
+    second.run()
+    assert own.table[:, 2].tolist() == [1.0, 2.0] and other[:, 2].tolist() == [2.0, 4.0]
 
 
 def test_what_cannot_be_bound_is_refused():
@@ -121,8 +128,8 @@ def test_without_the_compiler_it_is_the_same(tmp_path):
     code = ('from tests.core import test_bound as t\n'
             'from isa_ros.core.kernel import IS_COMPILED; assert not IS_COMPILED\n'
             't.test_a_call_changes_the_memory_in_place()\n'
-            't.test_a_program_ends_with_the_round_in_which_a_kernel_found_something()\n'
-            't.test_of_several_that_found_something_the_first_is_told()\n')
+            't.test_a_program_ends_at_the_kernel_that_finds_something()\n'
+            't.test_arrays_may_be_given_at_each_call()\n')
     subprocess.run([sys.executable, '-c', code], check=True, env={
         'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': ':'.join(sys.path)})
 

@@ -11,15 +11,19 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.fields import Field, record_type, units_of
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import restored_body, saved_body
-from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
+from isa_ros.core.signals import LOAD_REPLY
+from isa_ros.core.timebase import FORCE_WINDOWS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.surroundings.bodies.leg import port_kernel as kernels
-from isa_ros.surroundings.bodies.leg.inertial import Imu, imu_record, read_imu
+from isa_ros.surroundings.bodies.leg import stepping
+from isa_ros.surroundings.bodies.leg.inertial import Imu, IMU, imu_record
 from isa_ros.surroundings.bodies.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
+from isa_ros.surroundings.bodies.leg.port_kernel import LEG_FIELDS, LEG_SAMPLE
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, LegSheet
+from isa_ros.surroundings.clock import clock_of, NEVER
 from isa_ros.surroundings.inertial_unit import AXES, fields_of_unit
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
@@ -65,24 +69,32 @@ class Leg:
                  units: Sequence[InertialUnit] = ()) -> None:
         steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
         self._refuse_pose(sheet, pose)
-        self._step_ns = step_ns
         self.rows = np.array(rows, np.int64)
         """Rows of the actuators that drive HAA, HFE and KFE, (3,)."""
         self._release_ns = release_ns
+        self._clock = clock_of(step_ns, release_ns)
         self._constants = leg_record(sheet)
         self._state = rows_of(1, LEG_STATE)
         self._fields = sample_fields([unit.name for unit in units])
         self._sample = rows_of(1, record_type(self._fields))
-        self._motion = self._sample.view(np.uint8)[:kernels.LEG_SAMPLE.itemsize].view(
-            rows_of(1, kernels.LEG_SAMPLE).dtype)
-        self._units = tuple(units)
-        self._imus = [imu_record(unit.sheet, unit.key) for unit in units]
+        self._motion = self._sample.view(np.uint8)[:LEG_SAMPLE.itemsize].view(
+            rows_of(1, LEG_SAMPLE).dtype)
+        self._imus = np.array([imu_record(unit.sheet, unit.key) for unit in units], IMU)
+        self._periods = np.array([unit.period_ns for unit in units], np.int64)
         self._readings = self._sample.view(np.uint8)[self._motion.nbytes:].view(
             np.float64).reshape(-1, AXES)
-        self._step = step_ns / NS_PER_SECOND
-        self._t_ns = 0
-        self._is_to_be_released = release_ns is not None
+        self.filling = Rebound(stepping.fill_ports, lambda ports: stepping.LegPorts(
+            self._clock, self._state, self._constants, self.rows, ports))
+        """Of the ports: fills them for the next tick."""
+        self.advancing = Rebound(stepping.advance, self._tick)
+        """Of the replies: advances by one tick; what it returns is for `refuse`."""
         self._start(pose)
+
+    def _tick(self, replies: np.ndarray) -> stepping.LegTick:
+        """Return the memory of a tick with these replies."""
+        return stepping.LegTick(
+            self._clock, self._state, self._constants, self.rows, replies, self._motion,
+            self._imus, self._periods, self._readings)
 
     @staticmethod
     def _refuse_pose(sheet: LegSheet, pose: Pose) -> None:
@@ -107,21 +119,13 @@ class Leg:
             _, lever, _ = actuator_coordinate(pose.joints[k], leg[name])
             force = getattr(terms, f'h_{name}') / lever
             state.force[k] = state.mean_force[k] = state.older_mean[k] = force
-        kernels.fill_sample(
-            continuous(state), self.actuator_forces, True, leg, self._motion[0])
-        self._read_units(self.actuator_forces)
-
-    def _read_units(self, forces: tuple[float, float, float]) -> None:
-        """Read the inertial units that are due under the sensor forces (N | Nm) of now."""
-        for unit, imu, reading in zip(self._units, self._imus, self._readings):
-            if self._t_ns % unit.period_ns == 0:
-                read_imu(self._t_ns // PLANT_STEP_NS, self._state, forces, self._constants, imu,
-                         reading)
+        self._show = Bound(stepping.show, self._tick(np.zeros(0, LOAD_REPLY)))
+        self._show.run()
 
     @property
     def t_ns(self) -> int:
         """Return the time the leg has reached, ns."""
-        return self._t_ns
+        return int(self._clock['t_ns'][0])
 
     @property
     def actuator_forces(self) -> tuple[float, float, float]:
@@ -176,10 +180,7 @@ class Leg:
 
         The pressures in them are left as they are.
         """
-        if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
-            self._is_to_be_released = False
-            self.release()
-        kernels.leg_ports(self._state, self._step, self.rows, self._constants, ports)
+        self.filling.to(ports).run()
 
     def advance(self, replies: np.ndarray) -> None:
         """
@@ -191,15 +192,13 @@ class Leg:
             A state is no longer finite.
 
         """
-        broken = kernels.leg_tick(
-            self._state, self._step_ns, self.rows, self._constants, replies, self._motion)
-        self._t_ns += self._step_ns
-        if broken >= 0:
-            name = ContinuousState._fields[broken]
-            raise SimulationDiverged(self._t_ns, f'leg.{name}', float(self._state[name][0]))
-        if self._units:
-            haa, hfe, kfe = replies['force'][self.rows].tolist()
-            self._read_units((haa, hfe, kfe))
+        self.refuse(self.advancing.to(replies).run())
+
+    def refuse(self, found: int) -> None:
+        """Raise what `advancing` has found; 0: nothing."""
+        if found:
+            name = ContinuousState._fields[found - 1]
+            raise SimulationDiverged(self.t_ns, f'leg.{name}', float(self._state[name][0]))
 
     def snapshot(self) -> bytes:
         """
@@ -211,7 +210,7 @@ class Leg:
             A number of the state is not finite.
 
         """
-        return saved_body(self._t_ns, self._state, self._sample, 'leg')
+        return saved_body(self.t_ns, self._state, self._sample, 'leg')
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -223,14 +222,15 @@ class Leg:
             A number is not finite, or the time is not that of a tick.
 
         """
-        self._t_ns, self._state[:], self._sample[:] = restored_body(
-            snapshot, LEG_STATE, self._sample.dtype, self._step_ns, 'leg')
-        self._is_to_be_released = self._release_ns is not None and self.is_held
+        self._clock['t_ns'], self._state[:], self._sample[:] = restored_body(
+            snapshot, LEG_STATE, self._sample.dtype, int(self._clock['step_ns'][0]), 'leg')
+        self._clock['release_ns'] = (
+            NEVER if self._release_ns is None or not self.is_held else self._release_ns)
 
 
 def sample_fields(names: Sequence[str]) -> tuple[Field, ...]:
     """Return the fields of the sample of a leg with inertial units of these names."""
     readings = (('m/s2', 'in link axes'), ('rad/s', 'in link axes'))
-    return (*kernels.LEG_FIELDS, *(
+    return (*LEG_FIELDS, *(
         Field(field, *reading, (3,))
         for name in names for field, reading in zip(fields_of_unit(name), readings)))

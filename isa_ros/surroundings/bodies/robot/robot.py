@@ -8,21 +8,24 @@ position (m) or shaft angle (rad). Force > 0 pushes the actuator out.
 from collections.abc import Mapping, Sequence
 import math
 
+from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.fields import record_type, units_of
 from isa_ros.core.parameter import Parameters
-from isa_ros.core.record import rows_of
+from isa_ros.core.record import float_columns, rows_of
 from isa_ros.core.saved_state import restored_body, saved_body
-from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
+from isa_ros.core.signals import LOAD_REPLY
+from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.surroundings.bodies.robot import port_kernel as kernels
+from isa_ros.surroundings.bodies.robot import stepping
 from isa_ros.surroundings.bodies.robot.holding import holding_forces
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
+from isa_ros.surroundings.bodies.robot.port_kernel import kept_part
 from isa_ros.surroundings.bodies.robot.records import (
     contact_records, drive_records, link_records, speed_records, unit_records)
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
-from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
+from isa_ros.surroundings.clock import clock_of, NEVER
 from isa_ros.surroundings.inertial_unit import AXES
 from isa_ros.surroundings.vectors import first_broken
 import numpy as np
@@ -52,24 +55,38 @@ class Robot:
         steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
         _refuse_start(sheet, start)
         k = len(sheet.drives)
-        self._step_ns, self._step = step_ns, step_ns / NS_PER_SECOND
         self.rows = np.array(range(k) if rows is None else rows, np.int64)
         """Rows of its actuators, (k,)."""
-        self._release_ns, self._is_to_be_released = release_ns, release_ns is not None
-        self._t_ns, self._is_free = 0, sheet.is_free
+        self._release_ns = release_ns
+        self._clock = clock_of(step_ns, release_ns)
+        self._is_free = sheet.is_free
         self._names = state_names(sheet)
         self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
-        self._records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
-                         contact_records(sheet))
+        records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
+                   contact_records(sheet))
         n = len(self._names)
-        self._arrays = (*self._records, np.zeros(scratch_size(len(self._records[1]), k, n)))
+        self._arrays = stepping.RobotRecords(
+            *records, np.zeros(scratch_size(len(records[1]), k, n)))
         self._state = np.zeros(n + 4 * k + 1)
         self._fields = sample_fields(sheet, [unit.name for unit in units])
         self._sample = rows_of(1, record_type(self._fields))
-        self._values = self._sample.view(np.float64)
-        self._units, self._unit_records = tuple(units), unit_records(units)
-        self._readings = self._values[len(self._values) - AXES * len(units):].reshape(-1, AXES)
+        values = self._sample.view(np.float64)
+        columns = float_columns(self._sample.dtype)
+        self._shown = (
+            values, unit_records(units), np.array([unit.period_ns for unit in units], np.int64),
+            values[len(values) - AXES * len(units):].reshape(-1, AXES),
+            np.array([columns[f'{name}_touches'] for name in self._ends_run], np.int64))
+        self.filling = Rebound(stepping.fill_ports, lambda ports: stepping.RobotPorts(
+            self._clock, self._state, self.rows, self._arrays, ports))
+        """Of the ports: fills them for the next tick."""
+        self.advancing = Rebound(stepping.advance, self._tick)
+        """Of the replies: advances by one tick; what it returns is for `refuse`."""
         self._start(sheet, start)
+
+    def _tick(self, replies: np.ndarray) -> stepping.RobotTick:
+        """Return the memory of a tick with these replies."""
+        return stepping.RobotTick(
+            self._clock, self._state, self.rows, self._arrays, replies, *self._shown)
 
     def _start(self, sheet: RobotSheet, start: RobotStart) -> None:
         y = self._motion
@@ -79,32 +96,25 @@ class Robot:
         y[at:at + len(start.joints)] = start.joints
         self._state[-1] = 1.0
         forces = holding_forces(y, self._arrays, [own.actuator for own in sheet.drives])
-        kept = kernels.kept_part(self._state, len(forces))
+        kept = kept_part(self._state, len(forces))
         kept.force[:] = kept.mean_force[:] = kept.older_mean[:] = forces
-        kernels.robot_instant(self._state, forces, *self._arrays)
-        self._take(forces)
+        self._show = Bound(stepping.show, self._tick(np.zeros(0, LOAD_REPLY)))
+        self._show.run()
 
     @property
     def _motion(self) -> np.ndarray:
         """Return y of the state, a view."""
         return self._state[:len(self._names)]
 
-    def _take(self, forces: np.ndarray) -> None:
-        """Fill the sample, and read the units that are due, under the sensor forces of now."""
-        fill_sample(self._motion, forces, *self._records, self._values)
-        for unit, own, reading in zip(self._units, self._unit_records, self._readings):
-            if self._t_ns % unit.period_ns == 0:
-                read_unit(self._t_ns // PLANT_STEP_NS, self._motion, *self._arrays, own, reading)
-
     @property
     def t_ns(self) -> int:
         """Return the time the robot has reached, ns."""
-        return self._t_ns
+        return int(self._clock['t_ns'][0])
 
     @property
     def actuator_forces(self) -> np.ndarray:
         """Return the sensor forces (k,) the ports assume now; at t = 0 they hold the robot."""
-        forces: np.ndarray = kernels.kept_part(self._state, len(self.rows)).force.copy()
+        forces: np.ndarray = kept_part(self._state, len(self.rows)).force.copy()
         return forces
 
     @property
@@ -128,7 +138,7 @@ class Robot:
 
     def starts(self, starts: np.ndarray) -> None:
         """Fill position (m | rad) and force (N | Nm) of its actuators' rows of `START`."""
-        starts['position'][self.rows] = self._records[2]['position']
+        starts['position'][self.rows] = self._arrays.drives['position']
         starts['force'][self.rows] = self.actuator_forces
 
     def release(self) -> None:
@@ -144,7 +154,7 @@ class Robot:
         """Push the root from the next tick on."""
         if not isinstance(push, Push):
             return
-        root = self._records[0][0]
+        root = self._arrays.links[0]
         root['push_force'] = push.push_x, push.push_y, push.push_z
         root['push_moment'] = push.push_roll, push.push_pitch, push.push_yaw
         root['is_pushed'] = push != Push()
@@ -155,10 +165,7 @@ class Robot:
 
         The pressures in them are left as they are.
         """
-        if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
-            self._is_to_be_released = False
-            self.release()
-        kernels.robot_ports(self._state, self._step, self.rows, *self._arrays, ports)
+        self.filling.to(ports).run()
 
     def advance(self, replies: np.ndarray) -> None:
         """
@@ -172,22 +179,21 @@ class Robot:
             A contact that ends the run touches the ground.
 
         """
-        broken = kernels.robot_tick(
-            self._state, self._step_ns, self.rows, *self._arrays, replies)
-        self._t_ns += self._step_ns
-        self._refuse_broken(int(broken))
-        self._take(replies['force'][self.rows])
-        for name in self._ends_run:
-            if self._sample[f'{name}_touches'][0]:
-                raise RunError(
-                    f'{name} touches the ground at t = {self._t_ns / NS_PER_SECOND:g} s: with '
-                    'ends_run the robot has fallen')
+        self.refuse(self.advancing.to(replies).run())
+
+    def refuse(self, found: int) -> None:
+        """Raise what `advancing` has found; 0: nothing."""
+        self._refuse_broken(found - 1)
+        if found < 0:
+            raise RunError(
+                f'{self._ends_run[-1 - found]} touches the ground at '
+                f't = {self.t_ns / NS_PER_SECOND:g} s: with ends_run the robot has fallen')
 
     def _refuse_broken(self, at: int) -> None:
         """Raise `SimulationDiverged` for a place in the state that is not finite; -1: none is."""
         if at >= 0:
             name = (*self._names, 'force')[min(at, len(self._names))]
-            raise SimulationDiverged(self._t_ns, f'robot.{name}', float(self._state[at]))
+            raise SimulationDiverged(self.t_ns, f'robot.{name}', float(self._state[at]))
 
     def snapshot(self) -> bytes:
         """
@@ -201,7 +207,7 @@ class Robot:
         """
         self._refuse_broken(int(first_broken(self._state)))
         return saved_body(
-            self._t_ns, self._state.view(self._saved_state), self._sample, 'robot')
+            self.t_ns, self._state.view(self._saved_state), self._sample, 'robot')
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -213,10 +219,12 @@ class Robot:
             A number is not finite, or the time is not that of a tick.
 
         """
-        self._t_ns, state, self._sample[:] = restored_body(
-            snapshot, self._saved_state, self._sample.dtype, self._step_ns, 'robot')
+        self._clock['t_ns'], state, self._sample[:] = restored_body(
+            snapshot, self._saved_state, self._sample.dtype, int(self._clock['step_ns'][0]),
+            'robot')
         self._state[:] = state['state'][0]
-        self._is_to_be_released = self._release_ns is not None and self.is_held
+        self._clock['release_ns'] = (
+            NEVER if self._release_ns is None or not self.is_held else self._release_ns)
 
     @property
     def _saved_state(self) -> np.dtype[np.void]:

@@ -166,8 +166,8 @@ def test_noise_and_bias_of_every_axis_are_as_configured():
     exact = leg(unit('calf'))
     readings = np.empty((n, 2, 3))
     for k in range(n):
-        own._t_ns += MS     # a held leg at rest: only time passes
-        own._read_units(own.actuator_forces)
+        own._clock['t_ns'] += MS     # a held leg at rest: only time passes
+        own._show.run()
         readings[k] = reading(own, 'calf')
     noise = readings - np.array(reading(exact, 'calf'))
     bound = stats.norm.isf(1e-6 / 2 / 12)
@@ -205,8 +205,8 @@ def test_gyro_and_accelerometer_have_noise_of_their_own():
     own = leg(unit('calf', accelerometer_sigma=0.03, gyro_sigma=6e-4))
     readings = np.empty((n, 6))
     for k in range(n):
-        own._t_ns += MS
-        own._read_units(own.actuator_forces)
+        own._clock['t_ns'] += MS
+        own._show.run()
         readings[k] = np.concatenate(reading(own, 'calf'))
     pairs = np.corrcoef(readings.T)[np.triu_indices(6, 1)]
     assert np.abs(pairs).max() < stats.norm.isf(1e-6 / 2 / 15) / math.sqrt(n)

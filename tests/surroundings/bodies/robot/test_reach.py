@@ -156,6 +156,6 @@ def test_a_pressed_contact_answers_no_cylinder_at_its_dead_centre() -> None:
     for angle, moves in ((q + 0.05, True), (q, False)):
         robot._state[0] = angle
         robot.ports(ports)
-        assert robot._records[4]['force'][0, 2] > 1e3      # the tip presses
+        assert robot._arrays.contacts['force'][0, 2] > 1e3      # the tip presses
         assert (ports['inverse_mass'][0] > 1e-12) == moves
         assert (ports['stiffness'][0] != 0.0) == moves == (ports['damping'][0] != 0.0)

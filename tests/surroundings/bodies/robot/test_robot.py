@@ -90,7 +90,7 @@ def test_a_push_adds_momentum() -> None:
     for own in robots:
         sample, masses = own.tick(50), np.array([link.mass for link in SHEET.links])
         del sample
-        links = own.robot._records[0]
+        links = own.robot._arrays.links
         v = links['velocity'] + np.cross(links['turning'], links['origin'] + np.einsum(
             'nij,nj->ni', links['axes'].reshape(-1, 3, 3), links['com']))
         momenta.append(masses @ v)
