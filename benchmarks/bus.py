@@ -11,6 +11,7 @@ from isa_ros.fieldbus.request import FRAME, REAL_TIME
 CYCLES, ROUNDS = 2000, 3
 PLANTS = {'1': '1 actuator', LEG: 'the leg', '12': '12 actuators'}
 _AIMS = {LEG: Aim(2000.0), '12': Aim(700.0)}
+_LATENESS_AIM = Aim(500.0, is_most=True)    # us, of 99 % of the ticks, under SCHED_FIFO
 _QUANTILES: Mapping[str, Callable[[Cycles], float]] = {
     'median': lambda cycles: cycles.median, 'p99': lambda cycles: cycles.p99}
 _LATENESS = re.compile(
@@ -68,9 +69,13 @@ def real_time_rows(run: Cycles | str) -> list[Row]:
         return [Row(name, None, 'us', note='the slaves have not reported their lateness')]
     note = next((line for line in run.log if 'without SCHED_FIFO' in line), '')
     speed = Row(f'{name}: cycles', run.per_s, 'ticks/s').against('real time', run.per_s * 1e-3)
+    late = Row('lateness of a tick, p99', float(found['p99']), 'us')
+    if not note:
+        late = late.aiming(_LATENESS_AIM)
+    if late.is_reached is False:
+        late = late.noting('under SCHED_FIFO: other programs of that class, or a slow host')
     return [speed.noting(note), *(row.under(speed) for row in (
-        Row('lateness of a tick, median', float(found['p50']), 'us'),
-        Row('lateness of a tick, p99', float(found['p99']), 'us'),
+        Row('lateness of a tick, median', float(found['p50']), 'us'), late,
         Row('lateness of a tick, largest', float(found['max']), 'us'),
         Row('ticks more than 1 ms late', float(found['late']), '1'),
         Row('round trip, median', run.median * 1e6, 'us'),

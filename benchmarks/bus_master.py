@@ -10,6 +10,7 @@ from contextlib import contextmanager
 import json
 import math
 from pathlib import Path
+import re
 import signal
 import statistics
 import struct
@@ -48,9 +49,13 @@ def main(arguments: Sequence[str]) -> int:
             round_trips, spent = cycles(ring)
     cuts = statistics.quantiles(round_trips, n=100)
     Path(result).write_text(json.dumps(Cycles(
-        ring.cycles / spent, cuts[49], cuts[98], [line for line in log if 'real time' in line]
-        )._asdict()))
+        ring.cycles / spent, cuts[49], cuts[98], about_real_time(log))._asdict()))
     return 0
+
+
+def about_real_time(log: Sequence[str]) -> list[str]:
+    """Return the lines of the slaves' log about their pace and their lateness."""
+    return [line for line in log if REAL_TIME in re.sub('[- ]', '_', line)]
 
 
 @contextmanager

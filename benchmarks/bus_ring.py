@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 import json
+import os
 from pathlib import Path
 import shutil
 import subprocess
@@ -24,6 +25,7 @@ NEW_NAMESPACE = (
     f'ip link add {SLAVE_END} type veth peer name {MASTER_END} && ip link set lo up && '
     f'ip link set {SLAVE_END} up && ip link set {MASTER_END} up && exec "$@"', 'sh')
 """Runs a command in a network namespace with a pair of interfaces, without root."""
+_OWN_USERS = ('--user', '--map-root-user')
 TIMEOUT_S = 300.0
 
 
@@ -50,13 +52,27 @@ class Cycles(NamedTuple):
 
 
 @cache
+def namespace() -> tuple[str, ...]:
+    """
+    Return what runs a command in such a namespace: `NEW_NAMESPACE`, for root without its users.
+
+    The root of a namespace with users of its own may not use SCHED_FIFO.
+    """
+    of_root = tuple(word for word in NEW_NAMESPACE if word not in _OWN_USERS)
+    if os.geteuid() != 0:
+        return NEW_NAMESPACE
+    ended = subprocess.run([*of_root, 'true'], stdin=subprocess.DEVNULL, capture_output=True)
+    return NEW_NAMESPACE if ended.returncode else of_root
+
+
+@cache
 def missing() -> str:
     """Return why a ring cannot be measured here; '' if it can."""
     for program in ('unshare', 'ip'):
         if shutil.which(program) is None:
             return f'{program} is not installed'
     ended = subprocess.run(
-        [*NEW_NAMESPACE, sys.executable, '-c', 'import pysoem'], env=environment(),
+        [*namespace(), sys.executable, '-c', 'import pysoem'], env=environment(),
         stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if ended.returncode:
         reason = last_line(ended)
@@ -69,7 +85,7 @@ def measured(ring: Ring) -> Cycles | str:
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         result = Path(directory) / 'cycles.json'
         ended = subprocess.run(
-            [*NEW_NAMESPACE, sys.executable, '-m', 'benchmarks.bus_master', '0',
+            [*namespace(), sys.executable, '-m', 'benchmarks.bus_master', '0',
              json.dumps(asdict(ring)), str(result)], env=environment(),
             stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT_S)
         if ended.returncode:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 import errno
 import os
+import select
 import socket
 import struct
 import time
@@ -19,6 +20,8 @@ _BUFFER = 2048
 """Larger than the longest frame of EtherCAT, 1518 bytes."""
 _TIME = struct.Struct('@ll')
 _MICROSECONDS = 1_000_000
+_COARSE_S = 0.05
+"""A socket's own timeout ends with a tick of the kernel's timer, up to 10 ms late."""
 
 
 def ethercat_line(
@@ -90,10 +93,12 @@ class EthercatLine:
     def _receive(self, timeout: float) -> bool:
         """Receive a frame, and hold it if it is EtherCAT; return False if none arrives in time."""
         try:
-            if 0.0 < timeout != self._timeout:
+            if timeout >= _COARSE_S:
                 self._set_timeout(timeout)
+            elif timeout > 0.0:
+                select.select([self._socket], (), (), timeout)
             size = self._socket.recv_into(
-                self._frame, 0, socket.MSG_DONTWAIT if timeout <= 0.0 else 0)
+                self._frame, 0, 0 if timeout >= _COARSE_S else socket.MSG_DONTWAIT)
         except BlockingIOError:
             return False
         except OSError as error:
@@ -106,6 +111,8 @@ class EthercatLine:
 
     def _set_timeout(self, timeout: float) -> None:
         """Let the kernel end a wait, which takes one system call a frame instead of two."""
+        if timeout == self._timeout:
+            return
         self._timeout = timeout
         microseconds = max(1, round(timeout * _MICROSECONDS))
         value = _TIME.pack(*divmod(microseconds, _MICROSECONDS))
