@@ -25,6 +25,7 @@ from isa_ros.plant.channels import longest_delay_ms
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.plant.spool import PilotedSpool
 from isa_ros.reu.block import Pid
+from isa_ros.reu.compensation import DeadBand
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.filters import low_pass_coefficient
 from isa_ros.reu.impedance import Impedance
@@ -147,6 +148,9 @@ def _of_block(sheet: ActuatorSheet, variable: str) -> dict[str, Usable]:
         found['offset'] = Usable({'ge': -most, 'le': most}, why)
         found |= dict(_gains(sheet, block, float(sensors[_STEPS[variable]]), float(
             sensors['encoder'])))
+        if isinstance(block.compensation, DeadBand):
+            found['compensation.overlap'] = Usable(
+                {'lt': block.limit}, 'beyond it is the whole output of its block')
     elif isinstance(block, Impedance):
         force, count = max(block.force_out, block.force_in), float(sensors['encoder'])
         sensor = sheet.plant.mechanics.sensor_stiffness

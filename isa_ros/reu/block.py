@@ -12,7 +12,8 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.record import record
 from isa_ros.reu.compensation import (
-    COMPENSATION, compensation_record, dual_gain_compensation, DualGain, flow_curve, Linear)
+    compensated, COMPENSATION, compensation_record, DeadBand, demand_for, dual_gain_compensation,
+    DualGain, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 from isa_ros.reu.schedule import (
     Constant, FivePoints, OilStiffness, POINTS, scheduled, ThreePoints)
@@ -46,7 +47,7 @@ class Pid(Parameters):
     retracting_factor: float = tunable(
         'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
     gain_schedule: Constant | OilStiffness | ThreePoints | FivePoints
-    compensation: Linear | DualGain
+    compensation: Linear | DualGain | DeadBand
 
 
 BLOCK = np.dtype([
@@ -112,22 +113,22 @@ def demanded(reference, velocity, gain, block, state):
 
     u = w K_p (b r - y - K_f y') + I + K_d e' + K_r r + K_v v + u_0 with I' = w K_i e; ``gain``
     is the schedule's w. A retracting demand is scaled  (R7) before the flow curve is
-    compensated  (R4), so that the flow is scaled alike.
+    compensated  (R4, R21), so that the flow is scaled alike.
     """
     demand = uncompensated(reference, velocity, gain, block, state)
     if demand < 0.0:
         demand *= block.retracting
     if block.compensation.of_velocity:
         return demand
-    return dual_gain_compensation(demand, block.compensation)
+    return compensated(demand, block.compensation)
 
 
 @kernel
 def uncompensated_for(output, block):
-    """Return the demand before factor and compensation that gives ``output``  (R4, R7)."""
+    """Return the demand before factor and compensation that gives ``output``  (R4, R7, R21)."""
     demand = output
     if not block.compensation.of_velocity:
-        demand = flow_curve(output, block.compensation)
+        demand = demand_for(output, block.compensation)
     return demand / block.retracting if demand < 0.0 else demand
 
 

@@ -17,7 +17,7 @@ from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
 from isa_ros.reu import dither
 from isa_ros.reu.block import Pid
-from isa_ros.reu.compensation import DualGain
+from isa_ros.reu.compensation import DeadBand, Linear
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.filters import SpeedEstimate
 from isa_ros.reu.impedance import Impedance
@@ -194,10 +194,11 @@ def _refuse_far_from_valve(reu: Reu) -> None:
             'pid; set reu.pressure.kind: off')
     for name in VARIABLES:
         sheet = getattr(reu, name)
-        if (isinstance(sheet, Pid) and isinstance(sheet.compensation, DualGain)
+        if (isinstance(sheet, Pid) and not isinstance(sheet.compensation, Linear)
                 and name != at_valve):
+            kind = 'dead_band' if isinstance(sheet.compensation, DeadBand) else 'dual_gain'
             raise ConfigError(
-                f'reu.{name}.compensation.kind = dual_gain inverts the flow curve of the valve, '
+                f'reu.{name}.compensation.kind = {kind} inverts the flow curve of the valve, '
                 f"which {f'reu.{at_valve}' if at_valve else 'no block'} commands; set "
                 f'reu.{name}.compensation.kind: linear')
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from isa_ros.errors import ConfigError
-from isa_ros.reu.compensation import Linear
+from isa_ros.reu.compensation import DeadBand, Linear
 from isa_ros.reu.wiring import active, delay_steps, loop_steps, NEVER, Off, refuse_nonsense
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override
@@ -69,6 +69,10 @@ def test_only_the_block_that_commands_the_valve_inverts_its_flow_curve():
     with pytest.raises(ConfigError, match='reu.spool.compensation.* which no block commands'):
         refuse_nonsense(replace(reu, position=Off(), force=Off(), spool=replace(
             reu.spool, compensation=reu.force.compensation)))
+
+    band = DeadBand(overlap=1e-5, transition=1e-6, slope=0.9)
+    with pytest.raises(ConfigError, match='compensation.kind = dead_band .* reu.force commands'):
+        refuse_nonsense(replace(reu, spool=replace(reu.spool, compensation=band)))
 
 
 @pytest.mark.parametrize('delay_us', [100.0, 30.0])
