@@ -14,8 +14,9 @@ import re
 import struct
 from typing import NamedTuple
 
-from isa_ros.analysis.faults.measure import BEGIN_S, CONFIG, DURATION_S, END_S, STEP_S
-from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, NamedFault
+from isa_ros.analysis.faults.measure import BEGIN_S, END_S, STEP_S
+from isa_ros.analysis.faults.rigs import CONFIG, DURATION_S
+from isa_ros.config.models.fault_catalogue import ACTUATOR, common_faults, NamedFault
 from isa_ros.core.signals import COMMAND
 from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.session import commanded_by_bus
@@ -87,7 +88,7 @@ def table() -> str:
     rows = [('fault', 'status word, after ms', '0x603F', 'EMCY, after ms',
              'enabled again, ms after the end'), ('---',) * 5]
     unseen = []
-    for fault in fault_catalogue().values():
+    for fault in common_faults().values():
         if any(key.startswith('link.') for key in fault.values):
             continue    # refused under `isa bus`
         own = seen(fault)

@@ -34,7 +34,7 @@ class CoilSpring(Parameters):
         'where the port of chamber B leads: tank, the return line; breather, the air', TANK,
         'breather', absent=TANK, source='assumed')
     broken: float = fault(
-        '1: the spring is broken, without force', '1', is_whole=True, ge=0.0, le=1.0)
+        'share of its force that is gone; 1: the spring is broken', '1', ge=0.0, le=1.0)
 
 
 Spring = NoneSpring | CoilSpring

@@ -4,6 +4,7 @@ Read the lists ``faults`` and ``changes`` of a scenario.
     faults:
     - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
     - {t_s: 0.6, supply: supply, fault: pump_trip}
+    - {t_s: 0.6, supply: station, part: buffer, fault: accumulator_empty}
     - {t_s: 0.6, bus: hfe, set: {pulled: 1}, until_s: 0.7}
     - {t_s: 0.7, emergency_stop: all, until_s: 0.9}
     changes:
@@ -25,7 +26,8 @@ from typing import Any
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
 from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.config.models.bus_port import SOUND_PORT
-from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
+from isa_ros.config.models.fault_catalogue import (
+    ACTUATOR, fault_catalogue, KINDS, named_fault, SUPPLY, values_at)
 from isa_ros.config.runs.emergency_stops import ALL
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import kind_of
@@ -39,6 +41,7 @@ from isa_ros.scenario.changes_together import refuse_changes
 from isa_ros.scenario.course_reading import COURSES, tick_at, with_course
 from isa_ros.scenario.fault_courses import RAMP
 from isa_ros.scenario.faults import BODY, BUS, Fault
+from isa_ros.scenario.part_faults import PART, part_prefix, supply_values
 from isa_ros.scenario.waveforms import WAVEFORMS
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.surroundings.surroundings import EMERGENCY_STOP, OPEN
@@ -47,7 +50,7 @@ LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
 TARGETS = (*KINDS, LINK, BUS, BODY, EMERGENCY_STOP)
-_KEYS = ('t_s', *TARGETS, 'fault', 'set', 'until_s', *COURSES)
+_KEYS = ('t_s', *TARGETS, PART, 'fault', 'set', 'until_s', *COURSES)
 
 
 def read_faults(
@@ -88,11 +91,13 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             f'{place}.until_s = {tree["until_s"]:g} s, must be > t_s = {tree["t_s"]:g} s')
     if of == EMERGENCY_STOP:
         return _emergency_stop(tree, target, tick, until, place, run)
-    values = _values(tree, of, place)
+    if PART in tree and of != SUPPLY:
+        raise ConfigError(f'{place / PART} is not used: only a supply that is a circuit has parts')
+    values = _values(tree, of, place, _supply(run, target, place) if of == SUPPLY else None)
     where = f'{place}.{"fault" if "fault" in tree else "set"}'
     try:
         if of == SUPPLY:
-            sheet = _supply(run, target)
+            sheet = _supply(run, target, place)
             known: Mapping[str, Changeable] = changeables(sheet)
             _refuse_keys(values, known, where,
                          f'of {target}, a supply of kind {kind_of(sheet, SupplySheet)}, ')
@@ -107,6 +112,7 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             prefix = _OF_LINK if of == LINK else ''
             actuator = run.actuator(target)
             known = changing(actuator.sheet, actuator.load)
+            _refuse_lacking(tree, known, target, where)
             values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
             refuse_load(values, actuator.load)
             _refuse_keys(values, known, where)
@@ -147,7 +153,7 @@ def _emergency_stop(
     if group not in names:
         raise ConfigError(
             f'{place / EMERGENCY_STOP} = {group!r} is not a group; {alternatives(group, names)}')
-    for key in ('fault', 'set', *COURSES):
+    for key in ('fault', PART, 'set', *COURSES):
         if key in tree:
             raise ConfigError(f'{place / key} is not used: an emergency stop has no values')
     return Fault(tick, until, EMERGENCY_STOP, group, {OPEN: 1.0})
@@ -161,7 +167,8 @@ def _target(tree: Tree, place: Place) -> tuple[str, str]:
     return given[0], str(tree[given[0]])
 
 
-def _values(tree: Tree, of: str, place: Place) -> dict[str, Any]:
+def _values(
+        tree: Tree, of: str, place: Place, supply: SupplySheet | None) -> dict[str, Any]:
     """Return the values of a named fault, with those of ``set`` in their place or beside them."""
     if 'fault' not in tree and 'set' not in tree:
         raise ConfigError(place.has('needs set, or fault with the name of one'))
@@ -176,15 +183,20 @@ def _values(tree: Tree, of: str, place: Place) -> dict[str, Any]:
         values = dict(named.values)
         if of == LINK:
             values = {key.removeprefix(_OF_LINK): value for key, value in values.items()}
+        elif supply is not None:
+            values = supply_values(named, supply, tree, place)
     if 'set' in tree:
-        values |= values_at(tree['set'], place / 'set')
+        prefix = part_prefix(supply, tree, place)
+        values |= {f'{prefix}{key}': value
+                   for key, value in values_at(tree['set'], place / 'set').items()}
     return values
 
 
-def _supply(run: RunConfig, name: str) -> SupplySheet:
+def _supply(run: RunConfig, name: str, place: Place) -> SupplySheet:
     by_name = {supply.name: supply for supply in run.supplies}
     if name not in by_name:
-        raise ConfigError(f'{name!r} is not a supply; {alternatives(name, by_name)}')
+        raise ConfigError(
+            f'{place / SUPPLY} = {name!r} is not a supply; {alternatives(name, by_name)}')
     return by_name[name].sheet
 
 
@@ -195,6 +207,18 @@ def _of_body(run: RunConfig, name: str) -> Mapping[str, Changeable]:
         raise ConfigError(
             f'{name!r} is not a body that may be pushed; {alternatives(name, known)}')
     return changeables(known[name])
+
+
+def _refuse_lacking(
+        tree: Tree, known: Mapping[str, Changeable], actuator: str, where: str) -> None:
+    """Refuse a named fault of a part that an actuator does not have."""
+    if 'fault' not in tree:
+        return
+    fault = fault_catalogue()[str(tree['fault'])]
+    missing = sorted(fault.values.keys() - {own.key for own in known.values()})
+    if missing and fault.rig:
+        raise ConfigError(f'{where} = {fault.name!r} sets {missing[0]}, must be a fault of what '
+                          f'{actuator} has')
 
 
 def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str,

@@ -3,7 +3,7 @@
 from pathlib import Path
 from types import ModuleType
 
-from isa_ros.config.models.fault_catalogue import fault_catalogue
+from isa_ros.config.models.fault_catalogue import common_faults
 from isa_ros.examples import canopen_master, ethercat_master
 import pytest
 from scripts import write_bus_faults
@@ -19,7 +19,7 @@ def text() -> str:
 @pytest.mark.slow
 def test_a_row_of_the_faults_is_that_of_today():
     """The sensor that the example loses too: the trip is reset three times while it lasts."""
-    row = row_of(seen(fault_catalogue()['pressure_a_lost']), seen(None))
+    row = row_of(seen(common_faults()['pressure_a_lost']), seen(None))
     assert f'| `pressure_a_lost` | {" | ".join(row)} |' in text()
     assert 'fault 51' in row[0] and row[1] == '0x7300'
 
@@ -31,7 +31,7 @@ def test_the_table_of_faults_is_that_of_today():
 
 def test_every_fault_of_the_catalogue_is_in_the_page():
     page = text()
-    on_a_bus = [fault.name for fault in fault_catalogue().values()
+    on_a_bus = [fault.name for fault in common_faults().values()
                 if not any(key.startswith('link.') for key in fault.values)]
     assert [name for name in on_a_bus if f'`{name}`' not in page] == []
 

@@ -207,10 +207,18 @@ def test_a_load_holding_valve_is_refused_whose_pilot_is_not_fed(name, holding):
 
 
 @pytest.mark.parametrize(('name', 'value'), [
-    ('preload', -1.0), ('stiffness', 2e8), ('broken', 2.0), ('broken', 0.5), ('open_to', 'sea')])
+    ('preload', -1.0), ('stiffness', 2e8), ('broken', 1.01), ('broken', -0.5), ('open_to', 'sea')])
 def test_ranges_are_refused_by_name(name, value):
     with pytest.raises(ParameterError, match=f'CoilSpring.{name} = '):
         replace(SPRING, **{name: value})
+
+
+@pytest.mark.parametrize(('broken', 'left'), [(0.0, 1.0), (0.3, 0.7), (1.0, 0.0)])
+def test_a_weak_spring_has_the_rest_of_its_force(broken, left):
+    own = return_spring.spring_record(replace(SPRING, broken=broken))
+    assert (own.preload, own.stiffness) == pytest.approx(
+        (left * SPRING.preload, left * SPRING.stiffness), rel=1e-15, abs=0.0)
+    assert own.is_on == 1.0
 
 
 @pytest.mark.parametrize('p', [-1e5, 0.0, 7e6])

@@ -5,7 +5,7 @@ import random
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue
+from isa_ros.config.models.fault_catalogue import ACTUATOR, common_faults
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.supplies import SupplyConfig
@@ -27,8 +27,8 @@ def drawn(seed: int) -> list[Tree]:
     """Return a schedule of faults of the catalogue, overlapping and of any length."""
     own = random.Random(seed)
     faults: list[Tree] = []
-    for name in own.sample(sorted(fault_catalogue()), own.randint(1, 6)):
-        of = fault_catalogue()[name].of
+    for name in own.sample(sorted(common_faults()), own.randint(1, 6)):
+        of = common_faults()[name].of
         begin = own.randrange(TICKS)
         tree: Tree = {'t_s': begin * 1e-3, 'fault': name,
                       of: own.choice(('hip', 'knee')) if of == ACTUATOR else 'pump'}

@@ -1,7 +1,7 @@
 """
 Faults injected one by one into a running rig, against the same run without a fault.
 
-The rig is an ISA v5 that moves a mass, on a pump.
+The rig is an ISA v5 that moves a mass, on a pump; for faults of parts one that has the part.
 
 A fault is *visible* in a signal that the REU measures, or in the supply's pressure, once it
 differs from that of the sound run by more than `VISIBLE` steps of its converter. What the device
@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from isa_ros.config.models.fault_catalogue import (
-    ACTUATOR, fault_catalogue, named_fault, NamedFault)
+from isa_ros.analysis.faults.rigs import common_rigs, DURATION_S, Rig, rig_of
+from isa_ros.config.models.fault_catalogue import fault_catalogue, named_fault, NamedFault
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
@@ -23,7 +23,6 @@ from isa_ros.core.signals import (
     CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_FIELDS)
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
-from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import Progress
 from msg_adapters import device
@@ -32,31 +31,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 STEP_S = 1e-3
-BEGIN_S, END_S, DURATION_S = 0.5, 1.0, 2.2
-"""Time of every fault, and length of the run."""
+BEGIN_S, END_S = 0.5, 1.0
+"""Time of every fault."""
 CLEAR_S = 1.1
 """When what the device has kept of a fault is cleared: the causes of all have ended by then."""
-
-CONFIG: Tree = {
-    'name': 'fault_rig', 'step_ms': 1.0, 'controller_offset_ms': 0.12, 'tick_timeout_s': 5.0,
-    'supply': {
-        'kind': 'accumulator', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0,
-        'gas_volume_l': 0.32, 'precharge_mpa': 12.0, 'polytropic_exponent': 1.3,
-        'line_volume_l': 0.5, 'bulk_modulus': 1.0e9, 'pump_flow_lpm': 12.0, 'pump_lag_s': 0.03,
-        'pump_band_mpa': 0.5, 'relief_mpa': 22.5, 'relief_lpm_per_mpa': 10.0,
-        'return_line': {'kind': 'held'}},
-    'actuators': {'ram': {
-        'model': 'isa_v5', 'preset': 'default', 'load': {'kind': 'mass'},
-        'initial_position_mm': 50.0}}}
-"""A mass of 50 kg, and an accumulator that feeds its motion."""
-LINK: Tree = {'kind': 'ethercat', 'delay_cycles': 1, 'watchdog_ms': 10.0}
-"""Between commander and REU, for the faults of a link; the others have none."""
-
-MOTION: Tree = {
-    'name': 'sine', 'duration_s': DURATION_S, 'tracks': {'ram': [
-        {'t_s': 0.0, 'position': 'hold', 'stiffness': 1.0e5, 'damping': 4000.0,
-         'sine': {'amplitude': 0.02, 'frequency_hz': 2.0, 'moves': 'position'}}]}}
-"""20 mm at 2 Hz about mid stroke; at `BEGIN_S` the piston is fastest."""
 
 VISIBLE = 4.0
 """Steps of a signal's converter."""
@@ -68,6 +46,7 @@ _STATE = 'device_state'
 _DEVICE = (_STATE, 'device_mode', 'device_event', *_BIT_SETS, 'state_since')
 """Fields of a `SAMPLE` in which an actuator reports of itself."""
 _SUPPLY = 'supply pressure'
+_LINK = 'link'
 
 
 class Visible(NamedTuple):
@@ -128,11 +107,6 @@ def is_of_link(fault: NamedFault) -> bool:
     return any(key.startswith('link.') for key in fault.values)
 
 
-def target_of(fault: NamedFault) -> str:
-    """Return the name in `CONFIG` of what has a fault."""
-    return 'ram' if fault.of == ACTUATOR else 'supply'
-
-
 def outcomes(
         names: Sequence[str] | None = None, report: Progress | None = None) -> list[FaultEffect]:
     """
@@ -145,24 +119,25 @@ def outcomes(
 
     """
     chosen = chosen_faults(names)
-    plain, linked = load(CONFIG, MOTION), load({**CONFIG, 'link': LINK}, MOTION)
-    sound = {rig: _recorded(rig, ()) for rig in (plain, linked)}
+    rigs = dict(zip(('', _LINK), common_rigs()))
+    sound: dict[str, Mapping[str, NDArray[np.float64]]] = {}
     found = []
     for k, fault in enumerate(chosen):
         if report is not None:
             report(k, len(chosen))
-        rig = linked if is_of_link(fault) else plain
-        found.append(_outcome(rig, fault, sound[rig]))
+        name = _LINK if is_of_link(fault) else fault.rig
+        rig = rigs[name] = rigs[name] if name in rigs else rig_of(name)
+        if name not in sound:
+            sound[name] = _recorded(rig, ())
+        found.append(_outcome(rig, fault, sound[name]))
     if report is not None:
         report(len(chosen), len(chosen))
     return found
 
 
-def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> FaultEffect:
-    tree: Tree = {
-        't_s': BEGIN_S, fault.of: target_of(fault), 'fault': fault.name, 'until_s': END_S}
+def _outcome(rig: Rig, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> FaultEffect:
     try:
-        faulty = _recorded(rig, (tree,))
+        faulty = _recorded(rig, ({**rig.tree(fault, BEGIN_S), 'until_s': END_S},))
     except SimulationDiverged as error:
         return FaultEffect(fault, (), (), None, '', str(error))
     begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
@@ -182,14 +157,15 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
     return FaultEffect(
         fault, tuple(sorted(visible, key=lambda own: own.after_s)),
         tuple(_noticed(faulty, sound, begin)),
-        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S, _message(faulty))
+        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S,
+        _message(faulty, rig.actuator))
 
 
-def _message(faulty: Mapping[str, NDArray[np.float64]]) -> str:
+def _message(faulty: Mapping[str, NDArray[np.float64]], name: str) -> str:
     """Return the words of the first sample at the gravest level, or '' if that is OK."""
     reported = np.array([faulty[name] for name in _DEVICE]).T
     changes = [0, *np.flatnonzero((reported[1:] != reported[:-1]).any(axis=1)) + 1]
-    statuses = [device.joined('ram', dict(zip(_DEVICE, reported[tick]))) for tick in changes]
+    statuses = [device.joined(name, dict(zip(_DEVICE, reported[tick]))) for tick in changes]
     gravest = max(statuses, key=lambda status: status.level)
     return '' if gravest.level == OK else gravest.message
 
@@ -211,39 +187,39 @@ def _noticed(
     return sorted(found, key=lambda own: own.after_s)
 
 
-def _resolution(rig: Run) -> dict[str, float]:
+def _resolution(rig: Rig) -> dict[str, float]:
     """Return the step of the converter of every signal, SI."""
-    own = sensors_record(rig.configuration.actuator('ram').sheet.plant.sensors)
+    own = sensors_record(rig.run.configuration.actuator(rig.actuator).sheet.plant.sensors)
     steps = {'position': own.encoder, 'pressure_a': own.pressure_step,
              'pressure_b': own.pressure_step, _SUPPLY: own.pressure_step}
     return {name: float(steps[name] if name in steps else own[f'{name}_step'])
             for name in (*CHANNELS, _SUPPLY)}
 
 
-def _units(rig: Run) -> dict[str, str]:
-    is_rotary = rig.configuration.actuator('ram').sheet.is_rotary
+def _units(rig: Rig) -> dict[str, str]:
+    is_rotary = rig.run.configuration.actuator(rig.actuator).sheet.is_rotary
     return {_SUPPLY: 'Pa'} | units_of(SAMPLE_FIELDS, is_rotary)
 
 
-def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]]:
+def _recorded(rig: Rig, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]]:
     """Return the signals of a run with some faults, which are cleared at their end."""
-    scenario = rig.scenario.with_faults(faults)
-    simulation = Simulation(replace(scenario, run=rig.configuration))
+    scenario = rig.run.scenario.with_faults(faults)
+    simulation = Simulation(replace(scenario, run=rig.run.configuration))
     n, clear = round(DURATION_S / STEP_S), round(CLEAR_S / STEP_S)
-    rows = np.zeros(n + 1, SAMPLE)
+    rows, row = np.zeros(n + 1, SAMPLE), rig.row
     for tick in range(n + 1):
         if tick:
             simulation.step()
-        rows[tick] = simulation.group.samples[0]
+        rows[tick] = simulation.group.samples[row]
         if tick in (clear, clear + 1) and faults:
-            _clear(simulation, tick == clear)
+            _clear(simulation, row, tick == clear)
     return {_SUPPLY: rows['supply_pressure']} | {
         name: rows[name] for name in (*CHANNELS, *_DEVICE)}
 
 
-def _clear(simulation: Simulation, is_first: bool) -> None:
+def _clear(simulation: Simulation, row: int, is_first: bool) -> None:
     """Clear the fault that the device keeps, then enable it again."""
     command = np.zeros(1, COMMAND)[0]
     command['kinds'] = HAS_CLEAR_FAULT if is_first else HAS_ENABLE
     command['is_enabled'] = 1
-    simulation.group.actuators[0].accept(command)
+    simulation.group.actuators[row].accept(command)

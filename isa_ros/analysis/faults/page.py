@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.faults.measure import (
-    BEGIN_S, CLEAR_S, DeviceReport, END_S, FaultEffect, LINK, SOUND, VISIBLE, Visible)
+    BEGIN_S, CLEAR_S, DeviceReport, END_S, FaultEffect, SOUND, VISIBLE, Visible)
+from isa_ros.analysis.faults.rigs import ABOUT, LINK
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned, digits
@@ -20,7 +21,8 @@ _LARGEST = 3    # signals in a row of the table
 _HEAD = f"""# Faults of the device
 
 Each fault of the catalogue, `./isa faults --list`, in an ISA v5 that moves 50 kg by 20 mm at 2 Hz,
-fed by a pump with an accumulator. It begins at {BEGIN_S:g} s, where the piston is fastest, and
+fed by a pump with an accumulator; those of parts, such as hoses or the parts of a circuit, in a
+rig that has the part. Each begins at {BEGIN_S:g} s, where the piston is fastest, and
 ends at {END_S:g} s. For a fault of the link there is one, with frames each ms and a watchdog of
 {LINK['watchdog_ms']:g} ms. Written by
 
@@ -46,7 +48,10 @@ def listing() -> str:
 
 
 def _set(fault: NamedFault) -> str:
-    return ', '.join(f'{key}: {value:g}' for key, value in fault.values.items())
+    own = ', '.join(f'{key}: {value:g}' for key, value in fault.values.items())
+    of_part = ', '.join(f'parts.{fault.part.upper()}.{key}: {value:g}'
+                        for key, value in fault.part_values.items())
+    return '; of a circuit '.join(one for one in (own, of_part) if one)
 
 
 def as_text(found: Sequence[FaultEffect]) -> str:
@@ -96,6 +101,7 @@ def as_tree(found: Sequence[FaultEffect]) -> dict[str, Any]:
     """Return every outcome for JSON."""
     return {'faults': [{
         'name': own.fault.name, 'of': own.fault.of, 'set': dict(own.fault.values),
+        'part': own.fault.part, 'part_set': dict(own.fault.part_values), 'rig': own.fault.rig,
         'visible': [one._asdict() for one in own.visible],
         'noticed': [one._asdict() for one in own.noticed],
         'recovered_s': own.recovered_s, 'message': own.message, 'diverged': own.diverged,
@@ -106,7 +112,13 @@ def write_page(found: Sequence[FaultEffect], directory: Path) -> list[Path]:
     """Write the page; return its path."""
     page = Page(PAGE, _HEAD)
     page.section('Effects')
-    page.table(_rows(found))
+    page.table(_rows([own for own in found if not own.fault.rig]))
+    for rig, about in ABOUT.items():
+        of_rig = [own for own in found if own.fault.rig == rig]
+        if of_rig:
+            page.section(f'Faults of parts: {rig.replace("_", " ")}')
+            page.paragraph(about)
+            page.table(_rows(of_rig))
     if messages := _messages(found)[1:]:
         page.section('Messages')
         page.paragraph(_MESSAGES)

@@ -1,5 +1,5 @@
 """
-Which fault is noticed in which situation: every fault of the catalogue, in each of four.
+Which fault is noticed in which situation: every fault of any actuator, in each of four.
 
 At rest under impedance, in a slow and a fast sine, and against a blocked load with a force that
 swings. The rig and the faults are those of `isa_ros.analysis.faults.measure`.
@@ -11,15 +11,16 @@ from pathlib import Path
 from typing import Any
 import warnings
 
-from isa_ros.analysis.faults.measure import (
-    chosen_faults, CONFIG, is_of_link, LINK, target_of)
-from isa_ros.config.models.fault_catalogue import NamedFault
+from isa_ros.analysis.faults.measure import is_of_link
+from isa_ros.analysis.faults.rigs import CONFIG, LINK, Rig
+from isa_ros.config.models.fault_catalogue import common_faults, named_fault, NamedFault
+from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.units import MILLI
-from isa_ros.errors import SimulationDiverged
+from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.scripting.result import Result
-from isa_ros.scripting.run import load, Run
+from isa_ros.scripting.run import load
 from isa_ros.text.page import Page
 from isa_ros.text.progress import Progress
 from isa_ros.text.table import aligned, digits
@@ -44,8 +45,9 @@ SITUATIONS: Mapping[str, tuple[str, Tree]] = {
 
 _HEAD = f"""# Which fault is noticed when
 
-Each fault of the catalogue in four situations of the rig of [device_faults.md](device_faults.md):
-at rest, moving by 20 mm at 0.5 Hz and at 4 Hz, and pushing with 3 kN at 2 Hz against a blocked
+Each fault of any actuator or pump in four situations, of the rig of
+[device_faults.md](device_faults.md): at rest, moving by 20 mm at 0.5 Hz and at 4 Hz, and pushing
+with 3 kN at 2 Hz against a blocked
 load. It begins at {BEGIN_S:g} s and lasts. A cell has the condition that is noticed first, whether
 it warns or trips, and after how many ms; then the largest errors of position and force while the
 fault lasts, against the same run without it, exact ones. Without a condition there is *nothing*:
@@ -77,15 +79,15 @@ class Seen:
 def situations(
         names: Sequence[str] | None = None, report: Progress | None = None) -> list[Seen]:
     """
-    Return what is noticed of each fault of the catalogue, or of those named, by situation.
+    Return what is noticed of each fault of any actuator, or of those named, by situation.
 
     Raises
     ------
     ConfigError
-        A name is unknown.
+        A name is unknown, or that of a fault of a part.
 
     """
-    chosen = chosen_faults(names)
+    chosen = _chosen(names)
     found = []
     for k, (name, (kind, track)) in enumerate(SITUATIONS.items()):
         config: Tree = {**CONFIG, 'actuators': {'ram': {
@@ -93,24 +95,34 @@ def situations(
             'initial_position_mm': 50.0}}}
         scenario: Tree = {
             'name': 'situation', 'duration_s': DURATION_S, 'tracks': {'ram': [track]}}
-        plain, linked = load(config, scenario), load({**config, 'link': LINK}, scenario)
-        sound = {rig: rig.simulate() for rig in (plain, linked)}
+        plain = Rig(load(config, scenario), 'ram')
+        linked = Rig(load({**config, 'link': LINK}, scenario), 'ram')
+        sound = [rig.run.simulate() for rig in (plain, linked)]
         for j, fault in enumerate(chosen):
             if report is not None:
                 report(k * len(chosen) + j, len(SITUATIONS) * len(chosen), fault.name)
-            rig = linked if is_of_link(fault) else plain
-            found.append(_seen(fault, name, rig, sound[rig]))
+            has_link = is_of_link(fault)
+            found.append(_seen(fault, name, linked if has_link else plain, sound[has_link]))
     if report is not None:
         report(len(found), len(found))
     return found
 
 
-def _seen(fault: NamedFault, situation: str, rig: Run, sound: Result) -> Seen:
+def _chosen(names: Sequence[str] | None) -> list[NamedFault]:
+    """Return the faults of any actuator or pump, or those named."""
+    found = [named_fault(name, Place('--only')) for name in names or common_faults()]
+    for own in found:
+        if own.rig:
+            raise ConfigError(f'--only = {own.name!r} is a fault of a part, which no situation '
+                              'has; isa faults shows it without --situations')
+    return found
+
+
+def _seen(fault: NamedFault, situation: str, rig: Rig, sound: Result) -> Seen:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', TripWarning)
-            faulty = rig.simulate(
-                faults=[{'t_s': BEGIN_S, fault.of: target_of(fault), 'fault': fault.name}])
+            faulty = rig.run.simulate(faults=[rig.tree(fault, BEGIN_S)])
     except SimulationDiverged as error:
         return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
     condition, kind, after_s = _first(faulty, sound)

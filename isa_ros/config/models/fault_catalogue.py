@@ -13,7 +13,9 @@ from isa_ros.errors import ConfigError
 
 ACTUATOR, SUPPLY = 'actuator', 'supply'
 KINDS = (ACTUATOR, SUPPLY)
-_FILE = Path(__file__).parents[1] / 'data' / 'faults' / 'device.yaml'
+_FILES = [Path(__file__).parents[1] / 'data' / 'faults' / f'{name}.yaml'
+          for name in ('device', 'parts')]
+_KEYS = ('of', 'meaning', 'set', 'in_circuit', 'rig', 'unseen', 'unreported')
 _NUMBER = {'doc': 'value', 'unit': '', 'bounds': {}}
 
 
@@ -25,7 +27,13 @@ class NamedFault(NamedTuple):
     """One of `KINDS`."""
     meaning: str
     values: Mapping[str, float]
-    """By the keys of `isa params`, in their units."""
+    """By the keys of `isa params`, in their units; empty: only a circuit has it."""
+    part: str
+    """Of a circuit: the kind of the part that has the fault; '': none."""
+    part_values: Mapping[str, float]
+    """Of that part, likewise by key."""
+    rig: str
+    """Of `isa faults` with the parts that it needs; '': any actuator or pump may have it."""
     unseen: str
     """The reason why it may change no signal; '' for faults that do."""
     unreported: str
@@ -34,18 +42,28 @@ class NamedFault(NamedTuple):
 
 @cache
 def fault_catalogue() -> Mapping[str, NamedFault]:
-    """Return the faults by name, in the order of the file."""
-    faults: dict[str, NamedFault] = {}
-    for name, tree in read(_FILE).items():
-        place = Place(_FILE.name, name)
-        section = section_at(tree, place)
-        refuse_unknown(section, ('of', 'meaning', 'set', 'unseen', 'unreported'), place)
-        check(str(place / 'of'), section.get('of'), {'names': KINDS})
-        faults[name] = NamedFault(
-            name, str(section['of']), str(section['meaning']),
-            values_at(section.get('set'), place / 'set'), str(section.get('unseen', '')),
-            str(section.get('unreported', '')))
-    return faults
+    """Return the faults by name, in the order of the files."""
+    return {name: _fault(name, tree, Place(file.name, name))
+            for file in _FILES for name, tree in read(file).items()}
+
+
+def common_faults() -> Mapping[str, NamedFault]:
+    """Return those that any actuator or pump may have, without those of parts."""
+    return {name: own for name, own in fault_catalogue().items() if not own.rig}
+
+
+def _fault(name: str, tree: Any, place: Place) -> NamedFault:
+    section = section_at(tree, place)
+    refuse_unknown(section, _KEYS, place)
+    check(str(place / 'of'), section.get('of'), {'names': KINDS})
+    of_part = section_at(section.get('in_circuit', {}), place / 'in_circuit')
+    part = next(iter(of_part), '')
+    return NamedFault(
+        name, str(section['of']), str(section['meaning']),
+        {} if part and 'set' not in section else values_at(section.get('set'), place / 'set'),
+        part, values_at(of_part[part], place / 'in_circuit' / part) if part else {},
+        str(section.get('rig', '')), str(section.get('unseen', '')),
+        str(section.get('unreported', '')))
 
 
 def named_fault(name: str, place: Place) -> NamedFault:

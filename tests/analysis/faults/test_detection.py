@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from isa_ros.analysis.faults.measure import BEGIN_S, CONFIG, LINK, MOTION
+from isa_ros.analysis.faults.measure import BEGIN_S
+from isa_ros.analysis.faults.rigs import CONFIG, LINK, MOTION
 from isa_ros.bag.reader import Bag
-from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue
+from isa_ros.config.models.fault_catalogue import ACTUATOR, common_faults
 from isa_ros.core.conditions import conditions
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
@@ -32,12 +33,12 @@ REPORTED: Mapping[str, tuple[str, int]] = {
     'pressure_a_lost': ('load cell implausible', DELAY), 'pressures_lost': ('sensor range', 3),
     'supply_sensor_lost': ('sensor range', 3), 'spool_sensor_stuck': ('spool deviation', 102)}
 """First condition that the device warns of or trips, and ms from the begin of the fault."""
-UNREPORTED = [name for name, own in fault_catalogue().items() if own.unreported or own.unseen]
+UNREPORTED = [name for name, own in common_faults().items() if own.unreported or own.unseen]
 
 
 def result_of(name: str) -> Result:
     """Return a run with a fault, behind a link if it is one of it."""
-    fault = fault_catalogue()[name]
+    fault = common_faults()[name]
     has_link = any(key.startswith('link.') for key in fault.values)
     run = load({**CONFIG, 'link': LINK} if has_link else CONFIG, MOTION)
     return run.simulate(DURATION_S, faults=[{
@@ -59,7 +60,7 @@ def reported(name: str, directory: Path) -> tuple[str, int] | None:
 
 def test_every_fault_is_reported_or_there_is_a_reason() -> None:
     """A lost link takes the reports with it: it is detected by their age."""
-    assert sorted([*REPORTED, *UNREPORTED, 'link_lost']) == sorted(fault_catalogue())
+    assert sorted([*REPORTED, *UNREPORTED, 'link_lost']) == sorted(common_faults())
 
 
 @pytest.mark.parametrize('name', REPORTED)

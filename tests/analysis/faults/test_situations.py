@@ -20,6 +20,11 @@ def test_a_broken_wire_is_noticed_in_every_situation(found):
         assert own.after_s == pytest.approx(3e-3, abs=1e-9)
 
 
+def test_a_fault_of_a_part_is_refused():
+    with pytest.raises(ConfigError, match="--only = 'pump_worn' is a fault of a part, which no"):
+        situations(['pump_worn'])
+
+
 def test_open_relief_valves_are_noticed_where_force_is_needed(found):
     assert found['relief_stuck_open', 'at rest'].condition == ''
     for name in ('fast', 'blocked force'):
