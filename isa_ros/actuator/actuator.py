@@ -86,8 +86,9 @@ class SmartActuator:
         self._applied, self._reply, self._sample = (
             row_record(rows) for rows in (
                 self.memory.applied, self.memory.replies, self.memory.samples))
-        self._ticked = ticked(self.memory, timing.steps)
-        self._commands = self._ticked.commands
+        self.ticked = ticked(self.memory, timing.steps)
+        """Its tick's memory: ports, command and clock."""
+        self._commands = self.ticked.commands
         self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
@@ -246,20 +247,36 @@ class SmartActuator:
             A state is no longer finite.
 
         """
-        own = self._ticked
+        own = self.ticked
         own.ports[0] = self.memory.ports[0] if port is None else port
         self.latch_tuning()
-        own.commands['kinds'] = 0
-        own.clock[0] = self.t_ns // PLANT_STEP_NS
-        broken = self._tick.run()
-        self.t_ns += self._timing.step_ns
-        if broken:
-            self.raise_diverged(broken - 1)
+        self.begin_ticks()
+        self.end_ticks(1, self.advance.run())
 
     @cached_property
-    def _tick(self) -> Bound:
-        """Return its own tick, which is not needed where all of a process tick together."""
-        return bound_tick(self._ticked)
+    def advance(self) -> Bound:
+        """
+        Return its own tick over `ticked`, between `begin_ticks` and `end_ticks`.
+
+        It is not needed where all of a process tick together.
+        """
+        return bound_tick(self.ticked)
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no tuned value takes effect at the next tick, or did at the last one."""
+        return self.tuning.values.is_settled
+
+    def begin_ticks(self) -> None:
+        """Begin ticks that something else runs, without a command but those accepted."""
+        self.ticked.commands['kinds'] = 0
+        self.ticked.clock[0] = self.t_ns // PLANT_STEP_NS
+
+    def end_ticks(self, n: int, broken: int) -> None:
+        """Move the time on by n ticks, of which the last returned ``broken``; raise as `tick`."""
+        self.t_ns += n * self._timing.step_ns
+        if broken:
+            self.raise_diverged(broken - 1)
 
     def latch_tuning(self) -> None:
         """Begin a tick: put tuned values in force, without a jump of the valve current."""

@@ -1,5 +1,5 @@
 """
-What numba has no words for: arrays at an address, and calls of machine code at one.
+What numba has no words for: arrays at an address, and calls of machine code or of C at one.
 
 The functions here are known to the compiler only.
 """
@@ -68,3 +68,21 @@ def _called_at(typing_context: Any, address: Any, table: Any) -> Any:
 
 call_at: Any = intrinsic(_called_at)
 """Of an address and that of a table: what the machine code at the address returns for it."""
+
+
+def _call_of_c(
+        typing_context: Any, address: Any, first: Any, second: Any, third: Any,
+        fourth: Any) -> Any:
+    """Return the signature and the generator of `call_c`."""
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        called = ir.FunctionType(ir.IntType(64), [ir.IntType(64)] * 4)
+        return builder.call(builder.inttoptr(arguments[0], called.as_pointer()), arguments[1:])
+    return types.int64(*[types.int64] * 5), generate
+
+
+call_c: Any = intrinsic(_call_of_c)
+"""Of the address of a C function and four whole numbers or addresses: what the function returns.
+
+A function with fewer arguments ignores the rest, one of `int` takes the lower half of each. The
+upper half of a result of type `int` is undefined.
+"""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from isa_ros.core.accounts import accounts_of
 from isa_ros.core.device import FIELDS
+from isa_ros.core.kernel import kernel_function
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
@@ -21,6 +22,20 @@ DIAGNOSTICS = diagnostics.TOPIC[0]
 _FIELDS = tuple(SAMPLE.names or ())
 _SINCE, _AGE, _STALE = (_FIELDS.index(name) for name in ('state_since', 'age', 'is_stale'))
 _HALF_STEP_NS = 0.5 * PLANT_STEP_NS
+
+
+@kernel_function
+def is_status_due(
+        since: float, age: float, is_stale: float, t_ns: int, tick_start_ns: int) -> bool:
+    """
+    Return whether a tick that ends at ``t_ns`` has a message of a device, by its `SAMPLE`.
+
+    It is one in which the status has changed, as far as it has arrived over a link, or a second
+    of simulated time ended; t = 0. ``since`` and ``age`` are ``state_since`` and the age, s.
+    """
+    arrived = since + (0.0 if is_stale else age)
+    return (arrived * NS_PER_SECOND > tick_start_ns - _HALF_STEP_NS
+            or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
 
 class RareMessages:
@@ -73,17 +88,10 @@ class RareMessages:
             self.diagnose()
 
     def has_device(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
-        """
-        Return whether a tick has a message of an actuator's device.
-
-        It is one in which the status has changed, as far as it has arrived over a link, or a
-        second of simulated time ended; t = 0; `announce`.
-        """
-        age = 0.0 if self._values[row, _STALE] else self._values[row, _AGE]
-        since = (self._values[row, _SINCE] + age) * NS_PER_SECOND
-        return bool(since > tick_start_ns - _HALF_STEP_NS
-                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0
-                    or self._announces)
+        """Return whether a tick has a message of an actuator's device; also after `announce`."""
+        own = self._values[row]
+        return self._announces or bool(
+            is_status_due(own[_SINCE], own[_AGE], own[_STALE], t_ns, tick_start_ns))
 
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""

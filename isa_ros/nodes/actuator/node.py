@@ -91,6 +91,7 @@ class ActuatorNode(Node):
             self.create_service(SetBool, '~/enable', self._on_enable),
             self.create_service(Trigger, '~/clear_fault', self._on_clear_fault),
             self.create_service(Trigger, '~/quick_stop', self._on_quick_stop)]
+        self._setpoints = setpoints
         self._incompatible = IncompatiblePublishers(self, setpoints, SETPOINT_TYPE)
         self._inputs = open_server(
             self, [setpoints], services, self._tunables.services, has_mailbox)
@@ -106,13 +107,24 @@ class ActuatorNode(Node):
             SmartActuator(self.setup.config, self.setup.timing).tick()
         self._packer.pack(0, 0, {})
 
-    def publish(self) -> None:
-        """Publish applied commands, and the state where there is a subscription."""
+    def is_watched(self) -> bool:
+        """Return whether there is a matched publisher of setpoints, or a subscription."""
+        handle: Any = self._setpoints.handle
+        return self.outlet.is_subscribed or handle.get_publisher_count() > 0
+
+    def publish(self, n_ticks: int = 1) -> None:
+        """
+        Publish applied commands, and the state where there is a subscription.
+
+        They are those of the last of so many ticks; the others had nothing to publish.
+        """
         tuned = self.actuator.applied_parameters
+        if n_ticks > 1:
+            self.outlet.skip(n_ticks - 1)
         has_subscribers = self.outlet.has_subscribers()
-        t_ns = self.actuator.t_ns
-        start_ns = max(0, t_ns - self.setup.timing.step_ns)
-        if start_ns != self._published_ns:     # a state was restored
+        t_ns, step_ns = self.actuator.t_ns, self.setup.timing.step_ns
+        start_ns = max(0, t_ns - step_ns)
+        if max(0, t_ns - n_ticks * step_ns) != self._published_ns:     # a state was restored
             self._packer.rare.announce()
         self._published_ns = t_ns
         if not (has_subscribers or tuned or self._packer.has_applied(0)

@@ -18,6 +18,7 @@ from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
+from isa_ros.nodes.lockstep.steady_ticks import steady_ticks
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.domain import Claim
@@ -64,7 +65,9 @@ def _run(model: str, should_stop: StopRequest) -> None:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
             refuse_off(node.setup.config.name)
-            ParticipantEnd(node, ActuatorRole(node), node.setup.config.name).spin(should_stop)
+            role = ActuatorRole(node)
+            ParticipantEnd(node, role, node.setup.config.name, steady_ticks(node, role)).spin(
+                should_stop)
         else:
             claim = Claim(node.get_namespace(), node.get_name())
             try:

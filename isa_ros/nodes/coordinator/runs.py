@@ -15,6 +15,7 @@ from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.mixed_transport import MixedTransport
+from isa_ros.nodes.lockstep.steady_ticks import warm_up_ticks
 from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.domain import look_for_other_coordinator, sole_coordinator
@@ -114,8 +115,11 @@ def _participants(
     This compiles the kernels, so that not every child process does at the same time.
     """
     run, timing = session.run, timing_of(session.run)
+    actuators = warmed_up(run)
+    if not are_here:
+        warm_up_ticks(actuators[0])
     expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
-                for actuator in warmed_up(run)]
+                for actuator in actuators]
     expected += [Expected(name, '') for name in run.controllers]
     bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
     roster = Roster([own.name for own in expected],

@@ -5,14 +5,16 @@ import secrets
 import time
 from typing import Any
 
-from isa_ros.core.suggest import listed
-from isa_ros.errors import IsaError, one_line, SimulationDiverged
+from isa_ros.errors import one_line
+from isa_ros.nodes.lockstep.foreign_runs import ForeignRuns, WARNING_PERIOD_S
+from isa_ros.nodes.lockstep.outcomes import outcome_of
 from isa_ros.nodes.lockstep.roles import Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
+from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
-from isa_ros.run.wire.answers import (
-    ACKNOWLEDGEMENT_TOPIC, AnswerKind, DIVERGENCE, encode_answer)
+from isa_ros.run.wire.answering import Ended
+from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC, AnswerKind, encode_answer
 from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import decode_step, Step, STEP_TOPIC, StepKind
@@ -23,11 +25,6 @@ from std_msgs.msg import UInt8MultiArray
 SILENCE_S = 5.0
 """Time without a message after which a run counts as abandoned; a coordinator sends at least one
 message per second, also while it waits or is paused."""
-
-UNBOUND_PERIOD_S = 1.0
-"""Time between two answers to a run that did not call this participant."""
-
-WARNING_PERIOD_S = 10.0
 
 
 class ParticipantEnd:
@@ -40,12 +37,17 @@ class ParticipantEnd:
     A participant that is bound to a run refuses other coordinators until that run ends or
     its coordinator has sent nothing for `SILENCE_S`; a later message of the same coordinator
     continues the run. The middleware's graph is not enough: it lists a killed node for a lease.
+
+    ``ticks`` answers what comes by socket and needs nothing else; None: all is done here.
     """
 
-    def __init__(self, node: Node, role: Role, name: str = '') -> None:
+    def __init__(
+            self, node: Node, role: Role, name: str = '',
+            ticks: SteadyTicks | None = None) -> None:
         self._name = name or node.get_name()
         self._log = node.get_logger()
         self._role = role
+        self._ticks = ticks
         self._identity = secrets.token_bytes(8)
         path = f'{node.get_namespace().rstrip("/")}/{node.get_name()}'
         of_run = path.removesuffix(f'/{self._name}')
@@ -55,8 +57,7 @@ class ParticipantEnd:
             UInt8MultiArray, f'{of_run}/{ACKNOWLEDGEMENT_TOPIC}', LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
-        self._foreign_runs: set[int] = set()  # whose roster does not list this node
-        self._unbound_due = 0.0
+        self._foreign = ForeignRuns(self._name, lambda answer: self._send(answer), self._log)
         self._wire: LocalWire | None = None
         self._next_check = 0.0
         self._unbind()
@@ -84,9 +85,10 @@ class ParticipantEnd:
 
     def _spin(self, should_stop: Callable[[], bool]) -> None:
         while not should_stop():
-            data = self._next_step()
+            first, data = self._next_tick, self._next_step()
             if data is not None:
                 self._receive(data)
+            if data is not None or self._next_tick != first:
                 continue
             self._role.serve()
             is_abandoned = bool(self._run_id) and not self._has_coordinator(
@@ -100,17 +102,38 @@ class ParticipantEnd:
 
     def _next_step(self) -> bytes | None:
         """Return the next message, or None if none arrives within `SLICE_S`."""
-        wire = self._wire_in_use()
+        wire, ticks = self._wire_in_use(), self._ticks
+        are_next = ticks is not None and wire is not None and ticks.are_next
+        if ticks is not None and ticks.has_step and not are_next:
+            return ticks.take_step()
         if wire is None:
             return self._mailbox.wait(SLICE_S)
         if time.monotonic() >= self._next_check:
             if (data := self._mailbox.take()) is not None:
                 return data
             self._next_check = time.monotonic() + TOPIC_CHECK_S
-        data = wire.wait()
+        data = wire.wait() if ticks is None or not are_next else self._after_ticks(ticks, wire)
         if not wire.is_open:
             self._close_wire()
         return data
+
+    def _after_ticks(self, ticks: SteadyTicks, wire: LocalWire) -> bytes | None:
+        """Answer the ticks that need nothing else; return the message after them, if there is."""
+        ended = ticks.run(wire, self._next_tick)
+        if ticks.done:
+            self._last_message = time.monotonic()
+            self._next_tick += ticks.done
+            last = Step(StepKind.TICK, self._run_id, self._next_tick - 1, 0, b'')
+            if ended in (Ended.UNSENT, Ended.BROKEN):
+                is_done = self._answer_to(last, AnswerKind.DONE, ticks.end)
+            else:
+                is_done = True
+                self._answered, self._last = (last.kind, last.tick), (AnswerKind.DONE, ticks.end())
+            if is_done:
+                ticks.publish()
+        if ended is Ended.NOTHING:
+            return wire.take()
+        return ticks.take_step() if ended is Ended.OTHER else None
 
     def _wire_in_use(self) -> LocalWire | None:
         """Return the socket to the coordinator, which uses it once the run has begun."""
@@ -137,6 +160,16 @@ class ParticipantEnd:
                 throttle_duration_sec=WARNING_PERIOD_S)
             return
         self._handle(step)
+        if self._ticks is not None:
+            self._learn(self._ticks, step)
+
+    def _learn(self, ticks: SteadyTicks, step: Step) -> None:
+        """Leave steps like this one to ``ticks`` if it is a tick that was executed."""
+        if step.run_id == self._run_id and self._answered == (step.kind, step.tick) and (
+                self._last[0] is AnswerKind.DONE):
+            ticks.expect(step, self._index)
+        else:
+            ticks.forget()
 
     def _refuse_misfit(self, step: Step) -> None:
         if step.kind is StepKind.TICK:
@@ -154,7 +187,8 @@ class ParticipantEnd:
         if step.kind is StepKind.HELLO:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
-            self._answer_foreign(step)
+            if not self._run_id:
+                self._foreign.answer(step)
         elif self._answered == (step.kind, step.tick):
             self._repeat(step)
         elif self._is_past(step):
@@ -195,34 +229,13 @@ class ParticipantEnd:
             AnswerKind.READY, step.run_id, step.tick, self._index,
             (self._identity, self._role.digest, *self._first)))
 
-    def _answer_foreign(self, step: Step) -> None:
-        """
-        Send this name to a run that did not call it: another node may have the name.
-
-        It is sent again, as the run's coordinator may not have discovered this node yet.
-        """
-        now = time.monotonic()
-        if step.kind in (StepKind.TICK, StepKind.BEGIN) and not self._run_id and (
-                now >= self._unbound_due):
-            self._unbound_due = now + UNBOUND_PERIOD_S
-            self._send(encode_answer(
-                AnswerKind.UNBOUND, step.run_id, step.tick, 0, (self._name.encode(),)))
-
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it lists this participant."""
         self._unbind()
         roster = step.roster()
         names = list(roster.names)
-        has_role = self._name in (
-            names[:step.rows] if self._role.is_actuator else names[step.rows:])
-        if not has_role:
-            if step.run_id not in self._foreign_runs:
-                self._foreign_runs.add(step.run_id)
-                role = 'actuators' if self._role.is_actuator else 'controllers'
-                self._log.warning(
-                    one_line(f'the participants of a run are {listed(names)}, without '
-                             f'{self._name!r} among the {role}; declare it in the run file'),
-                    throttle_duration_sec=WARNING_PERIOD_S)
+        if self._name not in (names[:step.rows] if self._role.is_actuator else names[step.rows:]):
+            self._foreign.warn(step, names, self._role.is_actuator)
             return False
         self._run_id, self._last_message = step.run_id, time.monotonic()
         self._index, self._n_participants = names.index(self._name), len(names)
@@ -238,7 +251,7 @@ class ParticipantEnd:
             self._begin()
         else:
             self._unbind()
-            self._answer_foreign(step)
+            self._foreign.answer(step)
 
     def _begin(self) -> None:
         if not self._has_begun:
@@ -269,21 +282,11 @@ class ParticipantEnd:
 
         Exceptions other than `IsaError` are also sent to the coordinator, then end this process.
         """
-        try:
-            parts = work()
-        except SimulationDiverged as error:
-            self._answer(step, AnswerKind.DIVERGED, (
-                DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
-            return False
-        except IsaError as error:
-            self._answer(step, AnswerKind.REFUSED, (_encoded(str(error)),))
-            return False
-        except BaseException as error:
-            self._answer(step, AnswerKind.REFUSED, (
-                _encoded(f'{type(error).__name__}: {error}'),))
-            raise
-        self._answer(step, kind, parts)
-        return True
+        outcome = outcome_of(kind, work)
+        self._answer(step, outcome.kind, outcome.parts)
+        if outcome.error is not None:
+            raise outcome.error
+        return outcome.kind is kind
 
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
         self._answered, self._last = (step.kind, step.tick), (kind, parts)
@@ -295,7 +298,3 @@ class ParticipantEnd:
         wire = self._wire_in_use()
         if wire is None or not wire.send(answer):
             self._send(answer)
-
-
-def _encoded(text: str) -> bytes:
-    return text.encode(errors='backslashreplace')

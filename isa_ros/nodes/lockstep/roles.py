@@ -87,7 +87,8 @@ class ActuatorRole:
     def __init__(self, node: ActuatorNode) -> None:
         self._actuator = node.actuator
         self._index = self._n_actuators = 0
-        self._has_feed = False
+        self.has_feed = False
+        """Whether the supplies of its run have ports."""
         self._changes: Mapping[str, float] = {}
         self.digest = node.digest.encode()
         self.publish = node.publish
@@ -97,14 +98,14 @@ class ActuatorRole:
     def start(self, step: Step, index: int) -> Parts:
         """Start at rest, at t = 0, from its `START` row."""
         self._index, self._n_actuators = index, step.rows
-        self._has_feed = step.roster().has_supply_ports
+        self.has_feed = step.roster().has_supply_ports
         self._actuator.start(*step.start(index).item())
         return self._parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick of another number of actuators, or with invalid numbers."""
         step.refuse_tick(self._n_actuators, self._index)
-        if self._has_feed:
+        if self.has_feed:
             step.refuse_feed(self._index)
 
     def advance(self, step: Step) -> Parts:
@@ -115,9 +116,19 @@ class ActuatorRole:
         command = step.command(self._index)
         if command['kinds']:
             self._actuator.accept(command)
-        if self._has_feed:
+        if self.has_feed:
             self._actuator.memory.feeds[0] = step.feed(self._index)
         self._actuator.tick(step.port(self._index))
+        return self._parts()
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether the next tick changes no parameter, and answers with none."""
+        return not self._changes and self._actuator.is_settled
+
+    def ticked(self, n: int, broken: int) -> Parts:
+        """End n ticks that were run from outside, of which the last returned ``broken``."""
+        self._actuator.end_ticks(n, broken)
         return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:
@@ -134,7 +145,7 @@ class ActuatorRole:
         own = self._actuator.memory
         return actuator_parts(own.replies, own.observed, own.applied,
                               self._actuator.applied_parameters, own.sent,
-                              own.fed if self._has_feed else None)
+                              own.fed if self.has_feed else None)
 
 
 class ControllerRole:

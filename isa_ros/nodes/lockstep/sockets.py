@@ -71,10 +71,22 @@ class LocalWire:
             return None
         return LocalWire(end)
 
+    @property
+    def number(self) -> int:
+        """Return the file descriptor; below 0: closed."""
+        return self._socket.fileno()
+
     def wait(self) -> bytes | None:
         """Return the next message; None after the timeout, or if the socket is closed."""
+        return self._received(0)
+
+    def take(self) -> bytes | None:
+        """Return the next message if there is one."""
+        return self._received(socket.MSG_DONTWAIT)
+
+    def _received(self, flags: int) -> bytes | None:
         try:
-            data = self._socket.recv(LARGEST)
+            data = self._socket.recv(LARGEST, flags)
         except BlockingIOError:
             return None
         except OSError:

@@ -35,7 +35,11 @@ class PreparedPublishers:
         if self._countdown == 0:
             self.refresh()
         self._countdown -= 1
-        return self._has_subscribers
+        return self.is_subscribed
+
+    def skip(self, n_ticks: int) -> None:
+        """Pass so many ticks without a message."""
+        self._countdown = max(0, self._countdown - n_ticks)
 
     def publish(self, messages: Messages) -> None:
         """Publish the messages that are not None: on topics with a subscription, and kept ones."""
@@ -48,7 +52,8 @@ class PreparedPublishers:
         """Count the subscriptions again."""
         self._countdown = _REFRESH_TICKS
         subscribed = [bool(handle.get_subscription_count()) for handle in self._handles]
-        self._has_subscribers = any(subscribed)
+        self.is_subscribed = any(subscribed)
+        """Whether there was a subscription when they were last counted."""
         self._passed: list[tuple[int, Any]] = [
             (slot, handle.publish_raw) for slot, handle in enumerate(self._handles)
             if subscribed[slot] or self._is_kept[slot]]

@@ -13,6 +13,8 @@ ACKNOWLEDGEMENT_TOPIC = '_isa/acknowledgement'
 _ACKNOWLEDGEMENT = struct.Struct('<IIIIHHIIIQq')
 """Prefix; version, kind, index, number of parts, is_repeated, run id, tick."""
 
+HEADER_BYTES = _ACKNOWLEDGEMENT.size
+
 DIVERGENCE = struct.Struct('<qd')
 """First part of a `DIVERGED` answer: t_ns, value."""
 

@@ -14,9 +14,10 @@ from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.core.device import MODES
+from isa_ros.core.kernel import kernel_function
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT,
-    LOAD_REPLY, Records, SAMPLE, SUPPLY_REPLY, WAS_REFUSED)
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, LOAD_REPLY, Records,
+    SAMPLE, SUPPLY_REPLY, WAS_REFUSED)
 from isa_ros.run.wire.header import WireError
 from isa_ros.tick.exchange import Rows
 import numpy as np
@@ -33,9 +34,10 @@ _COUNT = 4  # bytes of a length
 _FLOAT = 8
 _APPLIED_AT = LOAD_REPLY.itemsize + SAMPLE.itemsize
 _ROWS = _APPLIED_AT + COMMAND.itemsize
-_PARTS = 3
+PARTS = 3
+"""Of an actuator's answer in a run whose supplies have no ports."""
 _LAST_STEP = 2**46  # of the plant: 44 years
-_NUMBERS = ('position', 'velocity', 'effort')
+_N_MODES = len(MODES)
 
 
 def actuator_parts(
@@ -65,7 +67,7 @@ def refuse_actuator_parts(parts: Parts) -> None:
         They cannot be taken.
 
     """
-    rows, tuned, sent = parts[:_PARTS] if _PARTS <= len(parts) <= _PARTS + 1 else (None,) * _PARTS
+    rows, tuned, sent = parts[:PARTS] if PARTS <= len(parts) <= PARTS + 1 else (None,) * PARTS
     if rows is None or len(rows) != _ROWS:
         raise WireError('an answer that is not of an actuator')
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
@@ -77,8 +79,8 @@ def refuse_actuator_parts(parts: Parts) -> None:
         refuse_command(np.frombuffer(sent, COMMAND)[0])
     if tuned is not None:
         tuned_of(tuned)
-    if len(parts) > _PARTS:
-        fed = parts[_PARTS] or b''
+    if len(parts) > PARTS:
+        fed = parts[PARTS] or b''
         if len(fed) != SUPPLY_REPLY.itemsize or not is_finite(np.frombuffer(fed, np.float64)):
             raise WireError('an answer with an invalid reply to the port of a supply')
 
@@ -155,20 +157,36 @@ def refuse_command(command: np.void, known: int = EVERY_KIND) -> None:
         A kind, a number or a gain is invalid.
 
     """
-    kinds = int(command['kinds'])
-    if not kinds:
-        return
-    numbers = [float(command[name]) for name in _NUMBERS] if kinds & HAS_SETPOINT else []
-    gains = [float(command[name]) for name in GAINS_OF_COMMAND] if kinds & WITH_GAINS else []
-    if kinds & HAS_REFERENCE:
-        numbers.append(float(command['reference']))
-    has_mode = kinds & (HAS_MODE | HAS_REFERENCE)
-    if (kinds & ~known or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
-            or has_mode and not 0 < command['mode'] < len(MODES)
-            or not 0 <= command['due_step'] <= _LAST_STEP
-            or not all(map(math.isfinite, numbers))
-            or any(math.isinf(gain) or gain < 0.0 for gain in gains)):
+    if not is_valid_command(command, known):
         raise WireError('a command with an invalid kind, number or gain')
+
+
+@kernel_function
+def is_valid_command(command: np.void, known: int) -> bool:
+    """Return whether an actuator can execute a `COMMAND` row, as `refuse_command`."""
+    kinds = command['kinds']
+    if kinds == 0:
+        return True
+    if (kinds | known) != known or not 0 <= command['due_step'] <= _LAST_STEP:
+        return False
+    if kinds & HAS_ENABLE and command['is_enabled'] > 1:
+        return False
+    if kinds & (HAS_MODE | HAS_REFERENCE) and not 0 < command['mode'] < _N_MODES:
+        return False
+    if kinds & HAS_REFERENCE and not math.isfinite(command['reference']):
+        return False
+    if kinds & HAS_SETPOINT and not (
+            math.isfinite(command['position']) and math.isfinite(command['velocity'])
+            and math.isfinite(command['effort'])):
+        return False
+    return not kinds & WITH_GAINS or (
+        _is_gain(command['stiffness']) and _is_gain(command['damping']))
+
+
+@kernel_function
+def _is_gain(gain: float) -> bool:
+    """Return whether a number is a gain; NaN keeps the one in force."""
+    return not (math.isinf(gain) or gain < 0.0)
 
 
 def is_finite(values: NDArray[np.float64]) -> bool:

@@ -18,6 +18,7 @@ STEP_TOPIC = '_isa/step'
 """Relative: of the namespace of the nodes."""
 
 _STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
+HEADER_BYTES = _STEP.size
 _NUMBER = struct.Struct('<q')
 _LARGEST_STEP_NS = 1_000_000_000
 _TICK = LOAD_PORT.itemsize + COMMAND.itemsize   # of an actuator
@@ -56,6 +57,10 @@ class Step(NamedTuple):
     tick: int
     rows: int
     body: bytes
+
+    def header(self) -> bytes:
+        """Return the bytes before the body."""
+        return _header(self.kind, self.run_id, self.tick, self.rows, len(self.body))
 
     def roster(self) -> Roster:
         """Return the participants that a hello calls: ``rows`` actuators first."""
@@ -180,13 +185,18 @@ def encode_hello(
 
 def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
     """Return the bytes of one tick: ports and commands, for controllers also the samples."""
-    body = rows.ports.tobytes() + rows.commands.tobytes()
-    if rows.has_supply_ports:
-        body += rows.feeds.tobytes()
-    if has_controllers:
-        body += rows.samples.tobytes() + rows.supplies.tobytes()
-        body += b''.join(sample.tobytes() for sample in rows.bodies.values())
+    body = b''.join(part.tobytes() for part in parts_of_tick(rows, has_controllers))
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
+
+
+def parts_of_tick(rows: Rows, has_controllers: bool) -> list[Records]:
+    """Return what the body of a tick consists of; `Step` has the inverse."""
+    parts = [rows.ports, rows.commands]
+    if rows.has_supply_ports:
+        parts.append(rows.feeds)
+    if has_controllers:
+        parts += [rows.samples, rows.supplies, *rows.bodies.values()]
+    return parts
 
 
 def _size_of_row(roster: Roster) -> int:
@@ -224,8 +234,11 @@ def encode_end(run_id: int) -> bytes:
 
 
 def _step(kind: StepKind, run_id: int, tick: int, rows: int, body: bytes) -> bytes:
-    return _STEP.pack(
-        *prefix(_STEP.size + len(body)), VERSION, kind, rows, run_id, tick) + body
+    return _header(kind, run_id, tick, rows, len(body)) + body
+
+
+def _header(kind: StepKind, run_id: int, tick: int, rows: int, n_bytes: int) -> bytes:
+    return _STEP.pack(*prefix(_STEP.size + n_bytes), VERSION, kind, rows, run_id, tick)
 
 
 def decode_step(data: bytes) -> Step:

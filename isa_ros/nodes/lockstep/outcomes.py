@@ -1,0 +1,35 @@
+"""What a participant answers to a step: its result, or the reason of its failure."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from isa_ros.errors import IsaError, SimulationDiverged
+from isa_ros.run.wire.answers import AnswerKind, DIVERGENCE
+from isa_ros.run.wire.parts import Parts
+
+
+class Outcome(NamedTuple):
+    """Kind and parts of an answer."""
+
+    kind: AnswerKind
+    parts: Parts
+    error: BaseException | None = None
+    """What also ends this process: all exceptions but `IsaError`."""
+
+
+def outcome_of(kind: AnswerKind, work: Callable[[], Parts]) -> Outcome:
+    """Return the outcome of ``work``, of this ``kind`` if it does not fail."""
+    try:
+        return Outcome(kind, work())
+    except SimulationDiverged as error:
+        return Outcome(AnswerKind.DIVERGED, (
+            DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
+    except IsaError as error:
+        return Outcome(AnswerKind.REFUSED, (_encoded(str(error)),))
+    except BaseException as error:
+        return Outcome(
+            AnswerKind.REFUSED, (_encoded(f'{type(error).__name__}: {error}'),), error)
+
+
+def _encoded(text: str) -> bytes:
+    return text.encode(errors='backslashreplace')

@@ -1,0 +1,116 @@
+"""
+Ticks of an actuator's node that come by socket and change nothing else, in a compiled loop.
+
+Setpoints, requests and subscriptions are looked at before and after every tick while the node has
+a matched publisher of setpoints or a subscription; without any, before a tick once per `QUIET_NS`
+of host time, and at the latest every `MOST` ticks.
+"""
+
+import time
+
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.core.kernel import IS_COMPILED
+from isa_ros.nodes.actuator.node import ActuatorNode
+from isa_ros.nodes.lockstep.roles import ActuatorRole
+from isa_ros.nodes.lockstep.sockets import is_possible, LARGEST, LocalWire
+from isa_ros.run.wire.answering import AnswerLoop, Ended
+from isa_ros.run.wire.parts import Parts
+from isa_ros.run.wire.steps import Step
+
+QUIET_NS = 5_000_000
+"""Host time between two looks at what may have arrived, without a matched publisher."""
+
+MOST = 20
+"""Ticks between two looks at the subscriptions of a node that has none."""
+
+
+class SteadyTicks:
+    """The loop of a ``node``, whose actuator has this role."""
+
+    def __init__(self, node: ActuatorNode, role: ActuatorRole) -> None:
+        self._node, self._role = node, role
+        self._loop = _loop_of(node.actuator)
+        self._is_due = False
+        self._due_ns = 0
+
+    def expect(self, step: Step, index: int) -> None:
+        """Take steps like this one from now on, a tick that was checked and executed."""
+        self._loop.expect(step, index, self._role.has_feed)
+
+    def forget(self) -> None:
+        """Take no step until one is executed by Python."""
+        self._loop.forget()
+
+    @property
+    def are_next(self) -> bool:
+        """Return whether the next tick may be one of the loop."""
+        return self._loop.is_expecting and self._role.is_settled
+
+    def run(self, wire: LocalWire, tick: int) -> Ended:
+        """Answer ticks from ``tick`` on; before a tick, do what is due."""
+        if not self._is_due:
+            ended = self._run(wire, tick, self._due_ns, MOST)
+            if ended is not Ended.DUE or self._loop.done:
+                return ended
+        self._is_due = False
+        self._role.serve()
+        if not self._role.is_settled:
+            return self._loop.leave()
+        is_watched, due_ns = self._node.is_watched(), time.monotonic_ns() + QUIET_NS
+        self._due_ns = 0 if is_watched else due_ns
+        return self._run(wire, tick, due_ns, 1 if is_watched else MOST)
+
+    def _run(self, wire: LocalWire, tick: int, due_ns: int, most: int) -> Ended:
+        self._node.actuator.begin_ticks()
+        ended = self._loop.run(wire.number, tick, due_ns, most)
+        self._is_due = ended is Ended.DUE
+        return ended
+
+    def end(self) -> Parts:
+        """
+        End the ticks of `run`; return the parts of the answer to the last one.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        return self._role.ticked(self._loop.done, self._loop.broken)
+
+    def publish(self) -> None:
+        """Publish the results of the last tick, where there is a subscription."""
+        self._node.publish(self._loop.done)
+
+    @property
+    def done(self) -> int:
+        """Return the number of ticks of the last `run`."""
+        return self._loop.done
+
+    @property
+    def has_step(self) -> bool:
+        """Return whether the loop has received a message that is not handled."""
+        return self._loop.has_step
+
+    def take_step(self) -> bytes:
+        """Return the message that the loop has left."""
+        return self._loop.take_step()
+
+
+def _are_possible() -> bool:
+    return IS_COMPILED and is_possible()
+
+
+def _loop_of(actuator: SmartActuator) -> AnswerLoop:
+    return AnswerLoop(actuator.ticked, actuator.advance, LARGEST)
+
+
+def warm_up_ticks(actuator: SmartActuator) -> None:
+    """Compile the loop, or load it from the cache."""
+    if _are_possible():
+        _loop_of(actuator)
+
+
+def steady_ticks(node: ActuatorNode, role: ActuatorRole) -> SteadyTicks | None:
+    """Return the loop of a node; None where there are neither sockets nor a compiler."""
+    return SteadyTicks(node, role) if _are_possible() else None

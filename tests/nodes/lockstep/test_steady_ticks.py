@@ -1,0 +1,140 @@
+"""What a node does between the ticks of its compiled loop."""
+
+from collections.abc import Callable, Iterator
+
+from isa_ros.core.kernel import IS_COMPILED
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT
+from isa_ros.nodes.lockstep import steady_ticks as module
+from isa_ros.nodes.lockstep.sockets import LARGEST
+from isa_ros.nodes.lockstep.steady_ticks import MOST, SteadyTicks
+from isa_ros.run.wire.answering import Ended
+from isa_ros.run.wire.answers import decode_answer
+from isa_ros.run.wire.steps import decode_step
+import numpy as np
+import pytest
+from tests.run.test_answering import Bench, closed, encoded, INDEX
+
+pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='the loop is machine code')
+
+
+class Quiet:
+    """A node and its role, that count what they are asked to do."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.actuator, self.has_feed, self.number = bench.actuator, False, bench.end.fileno()
+        self.watched = False
+        self.served = 0
+        self.published: list[int] = []
+        self.on_serve: Callable[[], None] = lambda: None
+
+    @property
+    def is_settled(self) -> bool:
+        return self.actuator.is_settled
+
+    def is_watched(self) -> bool:
+        return self.watched
+
+    def serve(self) -> None:
+        self.served += 1
+        self.on_serve()
+
+    def publish(self, n: int) -> None:
+        self.published.append(n)
+
+    def ticked(self, n: int, broken: int) -> list[bytes]:
+        self.actuator.end_ticks(n, broken)
+        return [b'parts']
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    closed(made)
+
+
+@pytest.fixture
+def node(bench, monkeypatch) -> Quiet:
+    monkeypatch.setattr(module, 'QUIET_NS', 10**12)
+    return Quiet(bench)
+
+
+@pytest.fixture
+def ticks(node) -> SteadyTicks:
+    made = SteadyTicks(node, node)
+    assert not made.are_next
+    made.expect(decode_step(encoded(4)), INDEX)
+    return made
+
+
+def send(bench: Bench, *ticks: int) -> None:
+    for tick in ticks:
+        bench.coordinator.send(encoded(tick))
+
+
+def test_nothing_is_looked_at_until_it_is_due(bench, node, ticks, monkeypatch):
+    send(bench, *range(5, 5 + MOST + 2))
+    assert ticks.run(node, 5) is Ended.ANSWERED and ticks.done == MOST
+    assert node.served == 1     # before the first tick
+    assert ticks.run(node, 5 + MOST) is Ended.NOTHING and ticks.done == 2
+    assert node.served == 1
+    monkeypatch.setattr(module, 'QUIET_NS', 0)
+    ticks._due_ns = 0
+    send(bench, 30)
+    assert ticks.run(node, 30) is Ended.DUE and ticks.done == 0 and ticks.has_step
+    assert ticks.run(node, 30) is Ended.DUE
+    assert node.served == 3
+
+
+def test_a_step_that_was_due_after_other_ticks_is_the_next_one(bench, node, ticks, monkeypatch):
+    send(bench, 5)
+    ticks.run(node, 5)
+    send(bench, 6)
+    run, ended = ticks._loop.run, [Ended.DUE]
+    monkeypatch.setattr(ticks._loop, 'run', lambda *given: ended.pop() if ended else run(*given))
+    assert ticks.run(node, 6) is Ended.DUE and ticks.done == 1     # of the call before
+    assert ticks.run(node, 6) is Ended.NOTHING and ticks.done == 1 and node.served == 2
+
+
+def test_while_somebody_listens_every_tick_is_looked_at(bench, node, ticks):
+    """A setpoint that has come before the step takes effect at it."""
+    node.watched = True
+    send(bench, 5, 6, 7)
+    answers = []
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['position'] = HAS_SETPOINT, 0.017
+    for tick in (5, 6, 7):
+        node.on_serve = (lambda: bench.actuator.accept(command)) if tick == 6 else lambda: None
+        assert ticks.run(node, tick) is Ended.ANSWERED and ticks.done == 1
+        assert node.served == tick - 4
+        ticks.end()
+        answers.append(decode_answer(bench.coordinator.recv(LARGEST)))
+    kinds = [np.frombuffer(own.parts[0], COMMAND, 1, 504)[0]['kinds'] for own in answers]
+    assert kinds == [0, HAS_SETPOINT, 0]
+    node.watched = False
+    send(bench, 8, 9, 10)
+    ticks.run(node, 8)
+    assert ticks.done == 2 + 1 and node.served == 4
+
+
+def test_a_tick_that_changes_a_parameter_is_left(bench, node, ticks):
+    send(bench, 5)
+    node.on_serve = lambda: bench.actuator.tune({'force.kp': 9e-8})
+    assert ticks.run(node, 5) is Ended.OTHER and ticks.done == 0
+    assert not ticks.are_next and ticks.has_step
+    assert ticks.take_step() == encoded(5) and not ticks.has_step
+
+
+def test_the_time_goes_on_with_the_ticks(bench, node, ticks):
+    t_ns = bench.actuator.t_ns
+    send(bench, 5, 6, 7)
+    ticks.run(node, 5)
+    assert ticks.end() == [b'parts'] and bench.actuator.t_ns == t_ns + 3_000_000
+    ticks.publish()
+    assert node.published == [3]
+
+
+def test_after_something_else_a_step_is_checked_first(bench, node, ticks):
+    assert ticks.are_next
+    ticks.forget()
+    assert not ticks.are_next

@@ -1,0 +1,153 @@
+"""Real actuators whose ticks run in the compiled loop, in a run with a coordinator."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+import threading
+
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.kernel import IS_COMPILED
+from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.errors import SimulationDiverged
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
+from isa_ros.nodes.lockstep import coordinator_end as lockstep
+from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
+from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.nodes.lockstep.roles import ActuatorRole
+from isa_ros.nodes.lockstep.steady_ticks import steady_ticks, SteadyTicks
+from isa_ros.run.wire.steps import encode_tick
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+from tests.ros.lockstep.participants import make_transport, NAMES, rows_of_two
+from tests.ros.started import wait_for
+
+pytestmark = [pytest.mark.ros, pytest.mark.skipif(
+    not IS_COMPILED, reason='the loop is machine code')]
+
+
+class Robot:
+    """Two actuators with loads of their own on threads, and their coordinator."""
+
+    def __init__(self, observer, ends: list[ParticipantEnd], nodes: list[ActuatorNode]) -> None:
+        self.transport: LockstepTransport = make_transport(observer)
+        self.ends, self.nodes, self.rows = ends, nodes, rows_of_two()
+        starts = self.transport._run.starts
+        starts['position'], starts['supply_pressure'] = (0.03, 0.04), 20.7e6
+        self.transport.join(self.rows)
+        self.transport.begin()
+
+    def tick(self, number: int, target: float | None = None) -> bytes:
+        rows = self.rows
+        rows.ports['supply_pressure'] = 20.7e6
+        rows.commands['kinds'] = 0 if target is None else HAS_SETPOINT
+        for name, value in ('position', target), ('stiffness', np.nan), ('damping', np.nan):
+            rows.commands[name] = 0.0 if value is None else value
+        self.transport.send(number, rows)
+        self.transport.receive(rows)
+        return rows.replies.tobytes() + rows.samples.tobytes() + rows.applied.tobytes()
+
+
+@contextmanager
+def driven(observer, is_looped: bool = True) -> Iterator[Robot]:
+    is_over = threading.Event()
+    nodes, ends = [], []
+    for name in NAMES:
+        setup = NodeSetup(default_actuator('isa_v5', name), DEFAULT_TIMING)
+        node = ActuatorNode(lambda _, setup=setup: setup, name, has_mailbox=True,
+                            context=observer.context, enable_rosout=False)
+        role = ActuatorRole(node)
+        role.digest = b'same'
+        nodes.append(node)
+        ends.append(ParticipantEnd(node, role, name,
+                                   steady_ticks(node, role) if is_looped else None))
+    threads = [threading.Thread(target=end.spin, args=(is_over.is_set,)) for end in ends]
+    for thread in threads:
+        thread.start()
+    try:
+        yield Robot(observer, ends, nodes)
+    finally:
+        is_over.set()
+        for thread in threads:
+            thread.join()
+        for node in nodes:
+            node.destroy_node()
+
+
+@pytest.fixture
+def looped(monkeypatch) -> list[int]:
+    """Return how many ticks each call of a loop has run."""
+    done: list[int] = []
+    run = SteadyTicks.run
+
+    def note(self, *given):
+        ended = run(self, *given)
+        done.append(self.done)
+        return ended
+    monkeypatch.setattr(SteadyTicks, 'run', note)
+    return done
+
+
+def target(tick: int) -> float | None:
+    return 0.03 if tick == 20 else None
+
+
+def test_a_run_is_the_same_with_and_without_the_loop(observer, looped):
+    with driven(observer, is_looped=False) as robot:
+        expected = [robot.tick(k, target(k)) for k in range(80)]
+        robot.transport.close()
+    assert looped == []
+    with driven(observer) as robot:
+        assert [robot.tick(k, target(k)) for k in range(80)] == expected
+        robot.transport.close()
+    assert sum(looped) > 2 * 60
+
+
+def test_a_repeated_step_is_answered_again_without_another_tick(observer, looped, monkeypatch):
+    """Its answer is that of the loop, from the topic."""
+    with driven(observer) as robot:
+        for k in range(30):
+            before = robot.tick(k)
+        sent: list[bytes] = []
+        for end in robot.ends:
+            monkeypatch.setattr(end, '_send_answer', sent.append)
+        monkeypatch.setattr(lockstep, 'REPEAT_S', 0.0)
+        robot.transport._send(encode_tick(robot.transport._run_id, 29, robot.rows, False))
+        wait_for(lambda: len(sent) == 2, 'both repetitions')
+        for own in sent:
+            index = own[20]
+            assert own[28] == 1     # is repeated
+            row = robot.rows.replies[index:index + 1].tobytes()
+            assert row in own and row in before
+        steps = 30 * DEFAULT_TIMING.steps
+        assert [int(own.actuator.ticked.clock[0]) for own in robot.nodes] == [steps, steps]
+    assert looped
+
+
+def test_a_state_that_breaks_in_the_loop_ends_the_run(observer, looped):
+    with driven(observer) as robot:
+        for k in range(10):
+            robot.tick(k)
+        kfe = robot.nodes[1].actuator
+        kfe.memory.continuous[0]['plant']['spool']['velocity'] = np.inf
+        with pytest.raises(SimulationDiverged, match='kfe: .*') as found:
+            robot.tick(10)
+        assert found.value.t_ns == 11_000_000 and looped
+
+
+def test_a_setpoint_of_a_publisher_takes_effect(observer, looped):
+    """The loop of its actuator notices it, and no other does."""
+    with driven(observer) as robot:
+        ticks = iter(range(10**6))
+        for _ in range(30):
+            robot.tick(next(ticks))
+        publisher = observer.create_publisher(JointState, '/kfe/setpoint', 10)
+
+        def has_effect() -> bool:
+            publisher.publish(JointState(name=['kfe'], position=[0.033]))
+            robot.tick(next(ticks))
+            return bool(robot.rows.applied['kinds'][1])
+        wait_for(has_effect, 'the setpoint')
+        assert robot.rows.applied['position'].tolist()[1] == 0.033
+        assert not robot.rows.applied['kinds'][0]
+        assert robot.nodes[1].is_watched() and not robot.nodes[0].is_watched()
+        assert looped

@@ -1,0 +1,277 @@
+"""The compiled loop of an actuator's end answers as Python does, and leaves the rest to it."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+import socket
+import struct
+import time
+
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.kernel import IS_COMPILED
+from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT
+from isa_ros.errors import SimulationDiverged
+from isa_ros.nodes.lockstep.sockets import LARGEST
+from isa_ros.run.wire.answering import AnswerLoop, Ended
+from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.parts import actuator_parts
+from isa_ros.run.wire.steps import decode_step, encode_save, encode_tick
+from isa_ros.tick.exchange import Rows
+import numpy as np
+import pytest
+from tests.actuator.test_link import link_of
+from tests.run.test_wire import filled
+
+RUN, INDEX, N = 0x1234_5678_9ABC_DEF0, 1, 3
+FAR_NS = 2**62          # of the host's clock: never due
+SECOND = 1000           # ticks
+FEED = 'with a feed'
+
+pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='the loop is machine code')
+
+
+def made(is_linked: bool = False) -> SmartActuator:
+    config: ActuatorConfig = default_actuator('isa_v5', 'kfe')
+    sheet = replace(config.sheet, link=link_of()) if is_linked else config.sheet
+    actuator = SmartActuator(replace(config, sheet=sheet, load=None), DEFAULT_TIMING)
+    actuator.start(0.01, 0.0, 20.7e6, 0.0)
+    for _ in range(3):      # until its first parameters are in force
+        actuator.tick(step_rows(0).ports[INDEX])
+    return actuator
+
+
+def step_rows(tick: int, has_feed: bool = False, target: float | None = None) -> Rows:
+    """Return the rows of a tick, different for each actuator and tick."""
+    rows = filled(N, bodies={})
+    rows.ports.view(np.float64)[:] = 0.0
+    rows.ports['x0'] = 0.01 + 1e-8 * np.arange(N) + 1e-9 * (tick % 100)
+    rows.ports['v0'] = 1e-6
+    rows.ports['inverse_mass'] = 0.01 * (1.0 + np.arange(N))
+    rows.ports['supply_pressure'] = 20.7e6 - 1e4 * (tick % 100)
+    rows.commands['kinds'] = HAS_SETPOINT
+    rows.commands['position'], rows.commands['due_step'] = 0.03, 0
+    for name in 'velocity', 'effort', 'stiffness', 'damping':
+        rows.commands[name] = 0.0 if name in ('velocity', 'effort') else np.nan
+    rows.commands['position'][INDEX] = 0.0 if target is None else target
+    rows.commands['kinds'][INDEX] = 0 if target is None else HAS_SETPOINT
+    rows.has_supply_ports = has_feed
+    rows.feeds.view(np.float64)[:] = 0.0
+    rows.feeds['elastance'], rows.feeds['share'] = 1e9 * (1.0 + np.arange(N)), 1.0
+    return rows
+
+
+def encoded(tick: int, **changed: object) -> bytes:
+    return encode_tick(RUN, tick, step_rows(tick, **changed), False)
+
+
+class Bench:
+    """An actuator in the loop, a twin of it in Python, and the coordinator's socket."""
+
+    def __init__(self, has_feed: bool = False, is_linked: bool = False) -> None:
+        self.actuator, self.twin = made(is_linked), made(is_linked)
+        self.has_feed = has_feed
+        self.coordinator, self.end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.coordinator.settimeout(10.0)
+        self.end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack('@ll', 0, 20_000))
+        self.loop = AnswerLoop(self.actuator.ticked, self.actuator.advance, LARGEST)
+        self.loop.expect(decode_step(encoded(7, has_feed=has_feed)), INDEX, has_feed)
+        self.actuator.begin_ticks()
+
+    def run(self, tick: int, most: int = 1, until_ns: int = FAR_NS) -> Ended:
+        return self.loop.run(self.end.fileno(), tick, until_ns, most)
+
+    def by_python(self, tick: int, target: float | None = None) -> bytes:
+        """Return what Python answers to a tick."""
+        rows, twin = step_rows(tick, self.has_feed, target), self.twin
+        if target is not None:
+            twin.accept(rows.commands[INDEX])
+        if self.has_feed:
+            twin.memory.feeds[0] = rows.feeds[INDEX]
+        twin.tick(rows.ports[INDEX])
+        own = twin.memory
+        return encode_answer(AnswerKind.DONE, RUN, tick, INDEX, actuator_parts(
+            own.replies, own.observed, own.applied, {}, own.sent,
+            own.fed if self.has_feed else None))
+
+
+def closed(bench: Bench) -> None:
+    bench.coordinator.close()
+    bench.end.close()
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    yield made
+    closed(made)
+
+
+@pytest.mark.parametrize('has_feed', [False, True], ids=['', FEED])
+@pytest.mark.parametrize('is_linked', [False, True], ids=['', 'behind a link'])
+def test_an_answer_is_byte_for_byte_that_of_python(has_feed, is_linked):
+    """With a command that takes effect, and others that are of other actuators."""
+    bench = Bench(has_feed, is_linked)
+    for tick in range(2**33, 2**33 + 40):   # beyond 32 bits
+        target = 0.012 if tick % 10 == 3 else None
+        bench.coordinator.send(encoded(tick, has_feed=has_feed, target=target))
+        assert bench.run(tick) is Ended.ANSWERED and bench.loop.done == 1
+        assert bench.coordinator.recv(LARGEST) == bench.by_python(tick, target)
+    assert bench.actuator.memory.replies[0]['velocity'] != 0.0
+    assert not has_feed or bench.actuator.memory.fed[0]['flow'] != 0.0
+    closed(bench)
+
+
+def test_several_ticks_are_one_call(bench):
+    for tick in range(5, 9):
+        bench.coordinator.send(encoded(tick))
+    assert bench.run(5, most=3) is Ended.ANSWERED and bench.loop.done == 3
+    assert [bench.coordinator.recv(LARGEST) for _ in range(3)] == [
+        bench.by_python(tick) for tick in (5, 6, 7)]
+    assert bench.run(8, most=3) is Ended.NOTHING and bench.loop.done == 1
+    assert bench.coordinator.recv(LARGEST) == bench.by_python(8)
+
+
+@pytest.mark.parametrize('tick, target', [(SECOND - 3, None), (20, 0.02)])
+def test_the_loop_ends_where_something_is_published(bench, tick, target):
+    """At a full second, and with a command that took effect."""
+    for actuator in bench.actuator, bench.twin:
+        actuator.end_ticks(tick - 2 - actuator.t_ns // DEFAULT_TIMING.step_ns, 0)
+    bench.actuator.begin_ticks()
+    for k in range(tick - 2, tick + 3):
+        bench.coordinator.send(encoded(k, target=target if k == tick else None))
+    news = tick if target is not None else SECOND - 1
+    assert bench.run(tick - 2, most=9) is Ended.ANSWERED
+    assert bench.loop.done == news - (tick - 2) + 1
+
+
+def spoilt(name: str) -> bytes:
+    """Return tick 7, altered."""
+    rows = step_rows(7)
+    if name == 'infinite port':
+        rows.ports['damping'][INDEX] = np.inf
+    elif name == 'kind':
+        rows.commands['kinds'][INDEX] = 128
+    elif name == 'gain':
+        rows.commands[INDEX] = rows.commands[0]
+        rows.commands['stiffness'][INDEX] = -1.0
+    data = bytearray(encode_tick(RUN, 7, rows, False))
+    if name == 'longer':
+        data += bytes(4)
+    elif name == 'shorter':
+        del data[-4:]
+    elif name == 'stub':
+        del data[6:]
+    elif name.isdecimal():
+        data[int(name)] ^= 1
+    return bytes(data)
+
+
+@pytest.mark.parametrize('name', [
+    *map(str, range(40)), 'infinite port', 'kind', 'gain', 'longer', 'shorter', 'stub'])
+def test_what_is_unusual_is_left_as_it_came(bench, name):
+    """Each byte of the header, of which the last eight are the tick."""
+    before = bench.actuator.snapshot()
+    bench.coordinator.send(spoilt(name))
+    assert bench.run(7) is Ended.OTHER and bench.loop.done == 0
+    assert bench.loop.has_step and bench.loop.take_step() == spoilt(name)
+    assert not bench.loop.has_step
+    assert bench.actuator.snapshot() == before
+    bench.coordinator.send(encoded(7))
+    assert bench.run(7) is Ended.ANSWERED
+    assert bench.coordinator.recv(LARGEST) == bench.by_python(7)
+
+
+def test_a_port_of_a_supply_that_is_not_finite_is_left():
+    bench = Bench(has_feed=True)
+    rows = step_rows(7, has_feed=True)
+    rows.feeds['flow'][INDEX] = np.nan
+    bench.coordinator.send(encode_tick(RUN, 7, rows, False))
+    assert bench.run(7) is Ended.OTHER
+    assert np.isfinite(bench.actuator.memory.feeds.view(np.float64)).all()
+    closed(bench)
+
+
+def test_numbers_of_other_actuators_are_theirs(bench):
+    rows = step_rows(7)
+    rows.ports['x0'][[0, 2]], rows.commands['kinds'][[0, 2]] = np.nan, 2**31
+    bench.coordinator.send(encode_tick(RUN, 7, rows, False))
+    assert bench.run(7) is Ended.ANSWERED
+    assert bench.coordinator.recv(LARGEST) == bench.by_python(7)
+
+
+def test_before_a_tick_was_checked_none_is_taken(bench):
+    bench.loop.forget()
+    assert not bench.loop.is_expecting
+    bench.coordinator.send(encoded(7))
+    assert bench.run(7) is Ended.OTHER and bench.loop.take_step() == encoded(7)
+    bench.loop.expect(decode_step(encoded(7)), INDEX, False)
+    bench.coordinator.send(encoded(7))
+    assert bench.loop.is_expecting and bench.run(7) is Ended.ANSWERED
+
+
+def test_steps_of_another_form_are_taken_once_they_were_checked(bench):
+    """Of another run, and those with supplies' ports."""
+    other = encode_tick(RUN + 1, 7, step_rows(7, has_feed=True), False)
+    bench.loop.expect(decode_step(other), INDEX, False)
+    bench.coordinator.send(other)
+    assert bench.run(7) is Ended.ANSWERED
+    assert bench.coordinator.recv(LARGEST)[32:40] == struct.pack('<Q', RUN + 1)
+    bench.coordinator.send(encoded(8))
+    assert bench.run(8) is Ended.OTHER
+
+
+def test_a_step_that_is_due_waits(bench):
+    bench.coordinator.send(encoded(7))
+    assert bench.run(7, until_ns=time.monotonic_ns()) is Ended.DUE
+    assert bench.loop.done == 0 and bench.loop.has_step
+    assert bench.run(7, until_ns=time.monotonic_ns() + 10**10) is Ended.ANSWERED
+    assert bench.coordinator.recv(LARGEST) == bench.by_python(7)
+    bench.coordinator.send(encoded(8))
+    assert bench.run(8, until_ns=0) is Ended.DUE
+    assert bench.loop.leave() is Ended.OTHER and bench.loop.done == 0
+    assert bench.loop.take_step() == encoded(8)
+
+
+def test_without_a_message_it_ends(bench):
+    """After the socket's timeout, at the end of the other side, and without a socket."""
+    begin = time.monotonic()
+    assert bench.run(7, most=5) is Ended.NOTHING and not bench.loop.has_step
+    assert time.monotonic() - begin >= 0.015
+    bench.coordinator.close()
+    assert bench.run(7) is Ended.NOTHING and bench.loop.done == 0
+    bench.end.close()
+    assert bench.run(7) is Ended.NOTHING
+
+
+def test_an_answer_that_cannot_be_sent_is_left_with_its_tick(bench):
+    bench.coordinator.send(encoded(7))
+    bench.coordinator.shutdown(socket.SHUT_RD)
+    assert bench.run(7) is Ended.UNSENT and bench.loop.done == 1
+    bench.by_python(7)
+    bench.actuator.end_ticks(1, 0)
+    assert bench.actuator.snapshot() == bench.twin.snapshot()
+
+
+def test_a_state_that_is_not_finite_is_that_of_python(bench):
+    for actuator in bench.actuator, bench.twin:
+        actuator.memory.continuous[0]['plant']['spool']['velocity'] = np.inf
+    bench.coordinator.send(encoded(7))
+    assert bench.run(7, most=4) is Ended.BROKEN and bench.loop.done == 1
+    bench.coordinator.settimeout(0.01)
+    with pytest.raises(TimeoutError):
+        bench.coordinator.recv(1)
+    with pytest.raises(SimulationDiverged) as by_python:
+        bench.by_python(7)
+    with pytest.raises(SimulationDiverged) as found:
+        bench.actuator.end_ticks(1, bench.loop.broken)
+    assert str(found.value) == str(by_python.value)
+
+
+def test_other_steps_are_left(bench):
+    bench.coordinator.send(encode_save(RUN, -1))
+    assert bench.run(7) is Ended.OTHER and bench.loop.take_step() == encode_save(RUN, -1)
+    rows = step_rows(7)
+    rows.commands['kinds'][INDEX] = HAS_CLEAR_FAULT
+    bench.coordinator.send(encode_tick(RUN, 7, rows, False))
+    assert bench.run(7) is Ended.ANSWERED
