@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from geometry_msgs.msg import WrenchStamped
+from msg_adapters.cdr_reader import decode
 from msg_adapters.template import Fields, Prepared, STAMP
 import numpy as np
 from sensor_msgs.msg import FluidPressure, Imu, Temperature
@@ -20,6 +21,11 @@ def fluid_pressure(frame_id: str, column: int) -> tuple[FluidPressure, Fields]:
     message = FluidPressure()
     message.header.frame_id = frame_id
     return message, {**STAMP, 'fluid_pressure': column}
+
+
+def pressure_in(data: bytes) -> float:
+    """Return the pressure of a message, Pa absolute; raises `CdrError`."""
+    return float(decode(data, FluidPressure).fluid_pressure)
 
 
 def temperature(frame_id: str, column: int) -> tuple[Temperature, Fields]:

@@ -251,3 +251,19 @@ SCALES: Mapping[str, Callable[[ActuatorSheet], float]] = {
     'force_integral_gain': _force_integral_gain,
 }
 """The quantities by name, of a sheet."""
+
+_OF_DRIVE = ('piston_area', 'stall_out', 'stall_in', 'stroke', 'swept_volume', 'seal_length',
+             'cap_spear', 'piston_volume', 'stall_damping', 'stall_stiffness', 'load_damping',
+             'rated_pressure')
+_OF_SPOOL = ('spool_frequency', 'valve_lag', 'valve_speed')
+_OF_VALVE = ('valve_current', 'per_valve_current', 'valve_stop', 'spool_travel', 'full_flow',
+             'valve_conductance', 'flow_knee', 'flow_gain_ratio')
+
+
+def keys_of(scale: str) -> str:
+    """Return the sections of a file that a quantity follows from, for messages."""
+    for keys, scales in (('plant.drive', _OF_DRIVE), ('plant.spool', _OF_SPOOL),
+                         ('plant.valve', _OF_VALVE)):
+        if scale in scales:
+            return keys
+    return 'plant.valve and plant.drive'

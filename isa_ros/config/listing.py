@@ -12,7 +12,7 @@ from isa_ros.config.models.catalogue import (
 from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
-from isa_ros.config.runs.robots import run_with_robots
+from isa_ros.config.runs.robots import FileOf, run_with_robots
 from isa_ros.config.runs.run_config import Origins, RUN, RunConfig
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.keys import Leaf
@@ -95,8 +95,9 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
     names = list(section_at(tree.get('actuators', {}), place / 'actuators'))
     if len(names) == 1:
         values = {full_key(key, names[0]): value for key, value in values.items()}
-    run, origins = run_with_robots(changed(tree, values, place.file), place)
-    return '\n\n'.join(_run_tables(run, origins, tuple(values)))
+    given = changed(tree, values, place.file)
+    run, origins = run_with_robots(given, place)
+    return '\n\n'.join(_run_tables(run, origins, tuple(values), FileOf(given, place, run.source)))
 
 
 def rows(parameters: Parameters, section: Section) -> list[ListedValue]:
@@ -128,10 +129,12 @@ def _kind_row(
                        source_of.get(f'{path}.kind', ''), doc)
 
 
-def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Iterator[str]:
+def _run_tables(
+        run: RunConfig, origins: Origins, changes: Sequence[str],
+        file_of: FileOf) -> Iterator[str]:
     """Return the tables of a run; values at the keys ``changes`` have the source `SET`."""
     yield _table(f'values of {run.source}', [
-        _single(leaf, SET if _is_among(leaf.key, changes) else run.source)
+        _single(leaf, SET if _is_among(leaf.key, changes) else file_of(leaf.key))
         for leaf in RUN.leaves(run, '') if not isinstance(leaf.value, Parameters)])
     kinds = dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked)
     wires = [_table(f'wire of links: {kind}', rows(*wire(kind))) for kind in kinds]
@@ -143,14 +146,25 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
             wires = []
         title, about = _title(run, key, parameters)
         section = origins.get(key)
-        found = rows(parameters, section or {})
-        if section is None:
-            found = [row._replace(source=run.source) for row in found]
+        found = (rows(parameters, section) if section is not None else
+                 list(_rows(parameters, _given(parameters, file_of(key)), '', {})))
         yield _table(title + about, [
             row._replace(source=SET) if _is_among(f'{title}.{row.parameter}', changes) else row
             for row in found])
         if isinstance(parameters, ActuatorSheet) and (fitted := fits(parameters.plant)):
             yield _fitted(title, fitted)
+
+
+def _given(parameters: Parameters, source: str, prefix: str = '') -> dict[str, str]:
+    """Return the source of all values that are not those of a file which leaves them out."""
+    found = {f'{prefix}kind': source}
+    for f in fields(parameters):
+        value = getattr(parameters, f.name)
+        if isinstance(value, Parameters):
+            found |= _given(value, source, f'{prefix}{f.name}.')
+        elif value != f.metadata.get('absent') or not f.metadata.get('source'):
+            found[f'{prefix}{f.name}'] = source
+    return found
 
 
 def _fitted(title: str, found: Sequence[Fit]) -> str:

@@ -72,6 +72,7 @@ _KNOBS = (
     _Knob('spool.loop_gain_per_s', 'spool', ('k_loop',), True),
     _Knob('coil.coil_inductance', 'coil', ('inductance',), False),
     _Knob('coil.bandwidth_rad_per_s', 'coil', ('p_c',), True))
+_PARTS = ('cushion_a', 'cushion_b')
 _OF_LOAD = (('inertia', 'kg | kg m2', False), ('stiffness', 'N/m | Nm/rad', True),
             ('damping', 'Ns/m | Nms/rad', True))
 
@@ -119,7 +120,7 @@ def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
     if _is_followed(plant, load):
         return
     changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, sheet, load)]
-    changes.sort(key=lambda change: max(change.factor, 1.0 / change.factor))
+    changes.sort(key=lambda change: change.size)
     bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
         'moving part, force sensor, oil, friction and load are too fast together')
     text = f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us{when}'
@@ -151,6 +152,14 @@ class _Change(NamedTuple):
 
     factor: float
     bound: str
+    is_part: bool = False
+    """Whether it is that of a part, which is named before half as large ones of the whole."""
+
+    @property
+    def size(self) -> float:
+        """Return how large the change is, as a factor above 1."""
+        size = max(self.factor, 1.0 / self.factor)
+        return 0.5 * size if self.is_part else size
 
 
 def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
@@ -159,7 +168,8 @@ def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterat
             return _is_followed(_scaled(plant, knob, factor), load)
         factor = _least_factor(follows, knob.less_helps)
         if factor is not None:
-            yield _change(f'plant.{knob.name}', value, unit, factor, knob.less_helps)
+            found = _change(f'plant.{knob.name}', value, unit, factor, knob.less_helps)
+            yield found._replace(is_part=knob.section in _PARTS)
 
 
 def _values(sheet: object) -> Iterator[tuple[_Knob, float, str]]:

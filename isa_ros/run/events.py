@@ -1,5 +1,5 @@
 """
-What happened in a run: trips, warnings, states, refusals, cavities, and what was changed.
+What happened in a run: trips, warnings, states, refusals, cavities, overpressure, and changes.
 
 Found in the samples of a run in memory, and in what its bag has of them, by the same functions;
 behind a link a bag has what has arrived.
@@ -9,22 +9,24 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.actuator.tunable import changing
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.changeable import Changeable, changeables
 from isa_ros.core.conditions import conditions
 from isa_ros.core.device import state_name
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import MILLILITRE, quantity
+from isa_ros.core.units import MILLILITRE, MPA, quantity
 from isa_ros.text.table import digits
 from isa_ros.tick.trips import counts_of, Trip, trips_of
 from msg_adapters.device import reason_of
 import numpy as np
 
 TRIP, WARNING, STATE = 'trip', 'warning', 'state'
-CHANGE, REFUSED, CAVITY = 'change', 'refused', 'cavity'
+CHANGE, REFUSED, CAVITY, OVERPRESSURE = 'change', 'refused', 'cavity', 'overpressure'
 SMALL = 1e-9
 """Cavities below it, m3, are not told of: 1 mm3."""
+PROOF = 1.5
+"""Pressure that a cylinder is tested with, over its rated one (ISO 10100); less is no event."""
 _DIGITS = 4
 _GAP = 2        # ticks between two values of a waveform: at an extreme two are equal
 _COUNTS = ('unused_setpoints', 'refused_requests')
@@ -38,7 +40,7 @@ class Event(NamedTuple):
     source: str
     """The actuator, or the supply."""
     kind: str
-    """`TRIP`, `WARNING`, `STATE`, `CHANGE`, `REFUSED` or `CAVITY`."""
+    """`TRIP`, `WARNING`, `STATE`, `CHANGE`, `REFUSED`, `CAVITY` or `OVERPRESSURE`."""
     what: str
 
 
@@ -53,6 +55,17 @@ class History(NamedTuple):
     """Changed parameters by sample, row and name."""
     tuned_supplies: Mapping[int, Mapping[str, float]] = {}
     """Those of the supplies, by sample and SUPPLY.KEY."""
+    cushions: 'Mapping[int, Trapped]' = {}
+    """Of the actuators with cushions, by row."""
+
+
+class Trapped(NamedTuple):
+    """The pressure behind the spears of one actuator."""
+
+    ticks: Sequence[int]
+    """Of the samples that have it, ascending, (n,)."""
+    pressures: np.ndarray
+    """Pa gauge, (n,)."""
 
 
 def trips_in(run: RunConfig, history: History) -> list[Trip]:
@@ -69,6 +82,8 @@ def events_in(run: RunConfig, history: History) -> list[Event]:
             samples = history.samples[:, row]
             found += _of_device(actuator.name, samples)
             found += _of_counts(actuator.name, samples, history.ticks, run.step_ns)
+    for row, trapped in history.cushions.items():
+        found += _of_cushion(run.actuators[row], trapped, run.step_ns)
     return sorted(found, key=lambda own: round(own.t_s * NS_PER_SECOND))
 
 
@@ -102,6 +117,17 @@ def _of_counts(
     if largest > SMALL:
         yield Event(_since(samples['largest_cavity'] > SMALL, ticks, step_ns), name, CAVITY,
                     f'vapour in a chamber, at most {digits(largest / MILLILITRE, _DIGITS)} ml')
+
+
+def _of_cushion(actuator: ActuatorConfig, trapped: Trapped, step_ns: int) -> Iterator[Event]:
+    """Yield an event if the trapped oil of an actuator is beyond the proof pressure."""
+    proof = PROOF * actuator.sheet.plant.drive.rated_pressure_mpa * MPA
+    most = float(np.max(trapped.pressures, initial=0.0))
+    if most > proof:
+        yield Event(
+            _since(trapped.pressures > proof, trapped.ticks, step_ns), actuator.name, OVERPRESSURE,
+            f'behind the spear of a cushion, at most {digits(most / MPA, _DIGITS)} MPa, more than '
+            f'{digits(proof / MPA, _DIGITS)} MPa, {PROOF:g} times plant.drive.rated_pressure_mpa')
 
 
 def _since(holds: np.ndarray, ticks: Sequence[int], step_ns: int) -> float:

@@ -10,15 +10,17 @@ from typing import NamedTuple
 from isa_ros.bag.reader import Bag, BagMessage
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.accounts import CHAMBERS
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.run.diagnostics import ENERGY
-from isa_ros.run.events import History
+from isa_ros.run.events import History, Trapped
 from msg_adapters import device, diagnostics
-from msg_adapters.actuator_messages import APPLIED_PARAMETERS, DEVICE
+from msg_adapters.actuator_messages import APPLIED_PARAMETERS, CUSHION_PRESSURE, DEVICE
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.coordinator_messages import APPLIED_PARAMETERS as OF_SUPPLIES, NODE
+from msg_adapters.sensor_messages import pressure_in
 import numpy as np
 
 _CAVITY = CHAMBERS[-1]
@@ -30,6 +32,7 @@ class _Topics(NamedTuple):
 
     devices: dict[str, int]
     parameters: dict[str, int]
+    cushions: dict[str, int]
 
 
 def history_of(bag: Bag, run: RunConfig) -> History:
@@ -44,7 +47,9 @@ def history_of(bag: Bag, run: RunConfig) -> History:
     """
     names = [own.name for own in run.actuators]
     topics = _Topics({f'/{name}/{DEVICE[0]}': row for row, name in enumerate(names)},
-                     {f'/{name}/{APPLIED_PARAMETERS[0]}': row for row, name in enumerate(names)})
+                     {f'/{name}/{APPLIED_PARAMETERS[0]}': row for row, name in enumerate(names)},
+                     {f'/{name}/{CUSHION_PRESSURE[0]}': row for row, name in enumerate(names)})
+    trapped: dict[int, dict[int, float]] = {}
     tuned: dict[int, dict[int, dict[str, float]]] = {}
     supplies: dict[int, dict[str, float]] = {}
     now = np.zeros(len(names), SAMPLE)
@@ -57,6 +62,9 @@ def history_of(bag: Bag, run: RunConfig) -> History:
             if row is not None:
                 tuned.setdefault(message.sequence, {})[row] = tuned_values(
                     message.data, names[row])
+            elif message.topic in topics.cushions:
+                trapped.setdefault(topics.cushions[message.topic], {})[message.sequence] = (
+                    pressure_in(message.data) - ATMOSPHERE)
             elif message.topic == OF_SUPPLIES[0]:
                 supplies[message.sequence] = tuned_values(message.data, NODE)
         except (CdrError, KeyError, SetpointError, ValueError) as error:
@@ -68,7 +76,9 @@ def history_of(bag: Bag, run: RunConfig) -> History:
         else:
             ticks.append(message.sequence)
             rows.append(now.copy())
-    return History(ticks, np.array(rows, SAMPLE).reshape(-1, len(names)), tuned, supplies)
+    return History(
+        ticks, np.array(rows, SAMPLE).reshape(-1, len(names)), tuned, supplies,
+        {row: Trapped(list(own), np.array(list(own.values()))) for row, own in trapped.items()})
 
 
 def _read(message: BagMessage, topics: _Topics, names: list[str], now: np.ndarray) -> bool:

@@ -12,6 +12,7 @@ from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import AnalysisError, BagError
+from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log, LogSink
 from isa_ros.simulation import Simulation
@@ -140,11 +141,17 @@ class Result(Mapping[str, NDArray[np.float64]]):
         Trips, warnings, states, refusals, cavities, and faults and other changes of parameters;
         those of the bag of the run are the same.
         """
-        from isa_ros.run.events import events_in, History  # import messages
-        log = self.log
-        return events_in(self.scenario.run, History(
+        from isa_ros.run.events import events_in, History, Trapped  # import messages
+        log, run = self.log, self.scenario.run
+        cushions = {}
+        for row, own in enumerate(run.actuators):
+            if is_cushioned(own.sheet.plant):
+                trapped = log.samples[:, row]['cushion_pressure']
+                there = np.flatnonzero(~np.isnan(trapped))
+                cushions[row] = Trapped(there.tolist(), trapped[there])
+        return events_in(run, History(
             self._with_device.tolist(), log.samples[self._with_device], log.tuned,
-            log.tuned_supplies))
+            log.tuned_supplies, cushions))
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""

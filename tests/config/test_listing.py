@@ -168,3 +168,34 @@ def test_an_empty_list_is_listed_as_none() -> None:
     table = describe('rig_linear', values={'emergency_stops.all.reactions': []})
     line = next(line for line in table.splitlines() if 'emergency_stops.all.reactions' in line)
     assert line.split()[1] == 'none'
+
+
+def source_in(text: str, parameter: str) -> str:
+    """Return the row of a parameter, which has its source."""
+    return next(line for line in text.splitlines() if line.startswith(f'{parameter} '))
+
+
+def test_the_values_of_a_robot_are_from_its_file(tmp_path):
+    """But those that stand beside it in the run file, and what the run file has itself."""
+    path = tmp_path / 'pair.yaml'
+    path.write_text(
+        'name: pair\nrobots:\n  r1: {file: leg}\n  r2: {file: leg, actuators: {kfe: {model: '
+        'isa_v2, preset: default}}}\nseed: 3\n')
+    text = describe(str(path))
+    for parameter, file in (
+            ('actuators.r1/kfe.model', ' leg.yaml '), ('actuators.r2/kfe.model', ' pair.yaml '),
+            ('actuators.r2/hfe.model', ' leg.yaml '), ('bodies.r2.model', ' leg.yaml '),
+            ('supplies.r1/supply.feeds', ' leg.yaml '), ('seed', ' pair.yaml ')):
+        assert file in source_in(text, parameter), parameter
+
+
+def test_what_a_file_leaves_out_of_a_circuit_has_its_own_source():
+    text = describe('pump_station')
+    for parameter, source in (
+            ('parts.pump.worn_lpm_per_mpa', 'assumed, no fault'),
+            ('parts.tank.pressure_mpa', 'assumed, open'),
+            ('parts.press.returns_to', 'pump_station.yaml'),
+            ('parts.pump.leakage_lpm_per_mpa', 'pump_station.yaml'),
+            ('parts.safety.opens_mpa', 'pump_station.yaml'),
+            ('parts.safety.kind', 'pump_station.yaml')):
+        assert f' {source} ' in source_in(text, parameter), parameter

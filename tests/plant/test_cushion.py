@@ -6,9 +6,10 @@ import math
 from typing import Any
 
 from hypothesis import given, strategies as st
+import isa_ros
 from isa_ros.actuator.sheet import refuse_wiring
 from isa_ros.core.timebase import FASTEST_RATE
-from isa_ros.errors import ParameterError
+from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import cushion
 from isa_ros.plant.chambers import volumes
 from isa_ros.plant.cushion_sheets import SpearCushion, trapped_area
@@ -196,3 +197,14 @@ def test_too_little_trapped_oil_for_the_step_is_refused_by_name(name, least):
     sheet = override(SHEET.plant, f'{name}.trapped_ml', 1.3 * least)
     refuse_too_fast(plant_record(sheet)[0], sheet, LoadSide())
     refuse_too_fast(plant_record(SHEET.plant)[0], SHEET.plant, LoadSide())
+
+
+@pytest.mark.parametrize(('trapped_ml', 'least'), [(0.001, '0.0428'), (0.01, '0.0428')])
+def test_too_little_trapped_oil_is_the_first_cause(trapped_ml: float, least: str) -> None:
+    """Though somewhat less of another change would do."""
+    with pytest.raises(ConfigError) as refused:
+        isa_ros.load('press').replace(
+            {'actuators.slide.parameters.plant.cushion_a.trapped_ml': trapped_ml})
+    said = str(refused.value).partition('actuators.slide: ')[2]
+    assert said.startswith(
+        f'plant.cushion_a.trapped_ml = {trapped_ml:g} ml, must be >= {least} ml; or plant.mech')

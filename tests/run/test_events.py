@@ -1,12 +1,18 @@
 """Events in samples: cavities, counts and changes, each once."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import isa_ros
+from isa_ros.analysis.report.events import recorded_events
+from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.conditions import BITS
 from isa_ros.core.signals import SAMPLE
-from isa_ros.run.events import _runs, events_in, History, SMALL
+from isa_ros.run.events import (
+    _runs, events_in, History, OVERPRESSURE, SMALL, Trapped)
 from isa_ros.run.recorded import _last_trip
 from msg_adapters import device
 import numpy as np
@@ -109,3 +115,42 @@ def test_the_fields_of_a_status_are_those_it_was_made_of():
     with pytest.raises(ValueError, match="condition 'moon' is unknown"):
         device.bits_of('overload, moon')
     assert device.bits_of('') == 0.0
+
+
+def press(*pressures: float, ticks: Sequence[int] = (0, 2, 4)) -> list[tuple[Any, ...]]:
+    """Return the events of the press, rated at 16 MPa, with these pressures behind a spear."""
+    run = isa_ros.load('press').configuration
+    history = History([], samples(0), cushions={
+        0: Trapped(ticks, np.array(pressures) * 1e6)})
+    return [tuple(own) for own in events_in(run, history)]
+
+
+def test_a_cushion_beyond_the_proof_pressure_is_told_of():
+    """1.5 times the rated 16 MPa; once, from when on and how much at most."""
+    assert press(0.0, 24.01, 76.04) == [(
+        0.002, 'slide', 'overpressure', 'behind the spear of a cushion, at most 76.04 MPa, more '
+        'than 24 MPa, 1.5 times plant.drive.rated_pressure_mpa')]
+    assert press(0.0, 23.99, -0.1) == [] == press(ticks=())
+
+
+def test_a_run_and_its_bag_tell_of_the_same_overpressure(tmp_path):
+    """The slide meets its cushion with all that the valve brings."""
+    result = isa_ros.load('press', 'press_stroke', duration=0.8).simulate()
+    own, = (one for one in result.events if one.kind == OVERPRESSURE)
+    most = result['slide.cushion_pressure'].max()
+    assert f'at most {most / 1e6:.4g} MPa' in own.what and 43e6 < most < 44e6
+    first = result.time[np.argmax(result['slide.cushion_pressure'] > 24e6)]
+    assert (own.t_s, own.source) == (pytest.approx(float(first), abs=1e-9), 'slide')
+    bag = result.save(tmp_path / 'bag')
+    assert own in isa_ros.read(bag).events and own in recorded_events(
+        Bag(bag), result.scenario.run)
+
+
+def test_a_bag_with_some_samples_of_a_cushion_tells_of_those(tmp_path):
+    """Decimated to every 50th tick, the peak is missed and the rest is not."""
+    run = isa_ros.load('press', 'press_stroke', changes={'record': {
+        'decimate': {'/*/cushion_pressure': 50}}}, duration=0.8)
+    bag = run.simulate().save(tmp_path / 'bag')
+    own, = (one for one in isa_ros.read(bag).events if one.kind == OVERPRESSURE)
+    assert own.t_s == pytest.approx(0.7, abs=1e-9)
+    assert own in recorded_events(Bag(bag), run.configuration)

@@ -51,10 +51,16 @@ are those of the spool behind the coil's current. This page is written by
 `./isa params rig_servo_valve.yaml` shows what is fitted of it. What a measurement has beside
 the sheet: a cycle of 50 s widens the loop by the lag of the spool; the ports' oil takes time to
 follow around null; hysteresis lags at 5 % of the current, which costs phase; and the limited speed
-of the spool is found by harmonic balance. At 7 MPa the null is 4 % of the current off
-that at the reference supply of 21 MPa: flow is about 4 % low at full current on one side, and at
-the spool's stop on the other; the table counts current from the null. So low a supply of an
-actuator rated at 21 MPa gives the warning `supply_low`."""
+of the spool is found by harmonic balance. So low a supply of an actuator rated at 21 MPa gives the
+warning `supply_low`.
+
+*Null shift*: to the current is added 0.286 % of the rated one for each MPa of the supply above
+the reference, 21 MPa, and 0.0526 % for each K of the oil above 40 celsius (V12). At 7 MPa that is
+-4 %: without current the spool stands at -20 um, towards retracting; +1.6 mA hold it at null; at
++40 mA it is open to 96 %, so that the flow is about 4 % low, and at -40 mA it is at its stop. The
+table counts current from the null. `plant.spool.null_bias.current_ma: 1.6` would trim it for this
+supply; a force loop with an integral does so by itself, and a position loop rests beside its
+setpoint by the current over its gain."""
 _SHAPES = """Left: flow over current, without load at 7 MPa. Right: load pressure with both ports
 shut, over 10 % of the current; between both branches it moves nearly from stop to stop."""
 

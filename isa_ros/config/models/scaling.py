@@ -11,7 +11,7 @@ one of them is of the same actuator.
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from isa_ros.actuator.scales import SCALES
+from isa_ros.actuator.scales import keys_of, SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section, SourcedValue
@@ -65,8 +65,9 @@ class Scaling:
         if factor == 1.0:
             return entry
         scaled = f'scaled with {entry.scales_with}'
+        why = f"{scaled}: {factor:.3g} times the model's, by {keys_of(entry.scales_with)}"
         return replace(
-            entry, value=_times(entry.value, factor), where=f'{place} ({scaled})',
+            entry, value=_times(entry.value, factor), where=f'{place} ({why})',
             source=f'{entry.source}; {scaled}', scales_with='')
 
 

@@ -5,6 +5,7 @@ import math
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.link import LinkSheet
+from isa_ros.actuator.overload import refuse_overload
 from isa_ros.actuator.setpoint_range import BEYOND_RANGE
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.tunable import refuse_unusable
@@ -121,7 +122,7 @@ def actuator_of(
         check(str(place / 'initial_position'), position, {
             'doc': 'within the stroke', 'unit': 'rad' if sheet.is_rotary else 'm',
             'bounds': {'ge': 0.0, 'le': sheet.plant.drive.stroke + _ROUNDING}})
-        _refuse_sheet(sheet, load_side, place, around.step_ns)
+        _refuse_sheet(sheet, load, load_side, place, around.step_ns)
     beyond, mode = values['beyond_range'], values['mode']
     if mode is not None:
         mode_of(mode, sheet.reu, str(place / 'mode'))
@@ -217,12 +218,15 @@ def _load_section(
         load, place / 'load', model, sheet)
 
 
-def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place, step_ns: int) -> None:
-    """Refuse blocks that do not fit, unusable values, and a plant too fast for its step."""
+def _refuse_sheet(
+        sheet: ActuatorSheet, load: LocalLoad | None, side: LoadSide, place: Place,
+        step_ns: int) -> None:
+    """Refuse blocks that do not fit, unusable values, an overload, and too fast a plant."""
     try:
         refuse_wiring(sheet)
         refuse_unusable(sheet)
         refuse_timeout(sheet, step_ns / NS_PER_SECOND)
-        refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
+        refuse_overload(sheet.plant, load)
+        refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, side)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error

@@ -94,6 +94,44 @@ def robot_files(
         yield RobotFile(name, read(path), Place.of(path), section)
 
 
+class FileOf:
+    """
+    Which file has the values at a key of a run: its own, or that of a robot.
+
+    ``tree`` is that of the run file at ``place``, whose name is ``source``.
+    """
+
+    def __init__(self, tree: Tree, place: Place, source: str) -> None:
+        self._source = source
+        self._robots = {own.name: own for own in robot_files(
+            tree[ROBOTS], place / ROBOTS, _OF_ROBOT, CONFIG)} if ROBOTS in tree else {}
+
+    def __call__(self, key: str) -> str:
+        """Return the name of the file; values beside the name of a robot's are in the run's."""
+        head, _, rest = key.partition('.')
+        name, _, below = rest.partition('.')
+        robot, _, part = name.partition('/')
+        own = self._robots.get(robot)
+        if own is None or not (part or head == 'bodies'):
+            return self._source
+        ways = ([('leg',), (BODY,), (head, part)] if head == 'bodies' else
+                [(head, part), *([(SUPPLY,)] if head == 'supplies' else [])])
+        steps = below.removeprefix('sheet.').split('.')
+        return self._source if any(
+            _has(own.changes, [*way, *steps]) for way in ways) else own.place.file
+
+
+def _has(tree: Any, steps: Sequence[str]) -> bool:
+    """Return whether a section has a value at the first of these steps, or at all of them."""
+    for step in steps:
+        if not isinstance(tree, dict):
+            return True
+        if step not in tree:
+            return False
+        tree = tree[step]
+    return True
+
+
 def agreed(
         trees: Mapping[str, Sections], keys: Mapping[str, str], own: Sections,
         place: Place) -> Sections:

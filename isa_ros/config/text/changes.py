@@ -17,6 +17,10 @@ from isa_ros.errors import ConfigError
 SCENARIO = 'scenario.'
 """Prefix of the keys of the scenario's file."""
 
+KIND = 'kind'
+BARE = ('none', 'off', 'held', 'rigid')
+"""Kinds of sections without values of their own."""
+
 Values = Mapping[str, Any]
 """Values by dotted key, in the order in which they are set."""
 
@@ -84,6 +88,7 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
 
     Missing sections on the path are added; key and value are checked when the tree is read. A key
     with dots that a section has, such as one in the ``set`` of a fault, is found as it is written.
+    A kind that has no values leaves none of those that another kind had in its section.
     ``where`` is the file's name.
 
     Raises
@@ -109,6 +114,8 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
         below = _entered(below, steps[0], steps[1], f'{where}: {key}')
         steps = steps[1:]
     _entered(below, steps[-1], None, f'{where}: {key}')
+    if steps[-1] == KIND and value in BARE:
+        below.clear()
     below[steps[-1]] = deepcopy(value)
     return changed
 

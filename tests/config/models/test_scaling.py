@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import isa_ros
-from isa_ros.actuator.scales import SCALES
+from isa_ros.actuator.scales import keys_of, SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.listing import describe
 from isa_ros.config.models import scaling
@@ -283,3 +283,20 @@ def test_a_replaced_value_does_not_scale() -> None:
     old = SourcedValue(1.0, 'm.yaml: a', 'assumed', 'stroke')
     new = SourcedValue(2.0, 'r.yaml: a', 'r.yaml')
     assert merge({'a': old}, {'a': new}) == {'a': new}
+
+
+@pytest.mark.parametrize(('scale', 'keys'), [
+    ('stall_in', 'plant.drive'), ('valve_lag', 'plant.spool'), ('full_flow', 'plant.valve'),
+    ('force_gain', 'plant.valve and plant.drive')])
+def test_a_quantity_names_the_section_of_a_file_that_it_follows_from(
+        scale: str, keys: str) -> None:
+    assert keys_of(scale) == keys
+
+
+def test_a_spool_that_is_too_fast_is_refused_by_its_own_section() -> None:
+    """The current loop follows at ten times its speed; the file has no key of the coil."""
+    with pytest.raises(ConfigError, match=(
+            r'plant\.coil\.bandwidth_rad_per_s \(scaled with spool_frequency: 11\.3 times the '
+            r"model's, by plant\.spool\) = 71084 rad/s, must be <= 50000 rad/s")):
+        isa_ros.load('rig_cylinder').replace({'actuators.ram.parameters.plant.spool': {
+            'kind': 'response', 'minus_90_deg_hz': 1000.0, 'minus_3_db_hz': 1000.0}})

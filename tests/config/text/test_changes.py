@@ -48,6 +48,17 @@ def test_a_key_with_dots_that_a_section_has_is_found(key):
     assert tree['faults'][0]['set']['plant.spool.stuck'] == 1
 
 
+@pytest.mark.parametrize('kind', ['none', 'off', 'held', 'rigid'])
+def test_a_kind_without_values_leaves_none_of_the_other_kind(kind):
+    tree = {'hoses': {'kind': 'lumped', 'length_m': 3.0}, 'lag': 4.0}
+    assert replaced(tree, 'hoses.kind', kind, 'x.yaml') == {'hoses': {'kind': kind}, 'lag': 4.0}
+    assert replaced(tree, 'hoses.kind', 'other', 'x.yaml')['hoses'] == {
+        'kind': 'other', 'length_m': 3.0}
+    assert replaced(tree, 'hoses.type', kind, 'x.yaml')['hoses']['length_m'] == 3.0
+    assert changed(tree, {'hoses.kind': kind, 'hoses.length_m': 5.0}, 'x.yaml')['hoses'] == {
+        'kind': kind, 'length_m': 5.0}
+
+
 def test_of_two_keys_with_dots_the_longer_one_is_meant():
     tree = {'a.b': {'c': 1}, 'a.b.c': 2, 'a': {'b': {'c': 3}}}
     assert replaced(tree, 'a.b.c', 9, 'x.yaml') == {
