@@ -19,6 +19,9 @@ from msg_adapters.cdr import CdrError
 
 PARTS_HEADER = ('part of a circuit', 'oil in, l', 'out, l', 'given, J', 'lost, J', 'stored, J',
                 'return, J', 'held, J', 'actuators, J')
+PARTS_LEGEND = (
+    'given: by pumps; lost: below 0 heat that gas has taken up; stored: more than at t = 0;\n'
+    'return: lost on the way to the tank; held: paid at pressures held over a tick')
 HEADER = ('', 'oil, l', 'mean, W', 'peak, W', 'energy, J', 'valve leakage', 'throttling',
           'friction', 'work', 'rest')
 _COLUMNS = (LEAKAGE,), (THROTTLING,), (FRICTION,), (WORK,), (CROSS_PORT, RELIEF, DAMPING, STORED)
@@ -75,7 +78,7 @@ def energy_text(bag: Path) -> str:
         return ''
     parts = parts_table(accounts)
     return '\n'.join([*aligned(energy_table(accounts), 'lr'), energy_legend(accounts),
-                      *(['', *aligned(parts, 'lr')] if parts else [])])
+                      *(['', *aligned(parts, 'lr'), PARTS_LEGEND] if parts else [])])
 
 
 def energy_table(accounts: Accounts) -> list[tuple[str, ...]]:

@@ -9,7 +9,9 @@ from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.runs.supplies import GAS, SupplyConfig
 from isa_ros.config.text.names import parted
 from isa_ros.core.units import MPA
+from isa_ros.plant.hose import LumpedHoses
 from isa_ros.run.events import Event, TRIP
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
@@ -17,7 +19,8 @@ import numpy as np
 
 _TRIP = 'black'     # no curve has it
 _MOST_MARKS = 20
-_PRESSURE = 'pressure, MPa gauge'
+_PRESSURE, _BACK = 'pressure, MPa gauge', 'return side, MPa gauge'
+_GAS = 'temperature of gas, celsius'
 _OF_LEG = ('position', 'torque', 'foot_force')
 
 
@@ -71,8 +74,10 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
         _reference(ax, of(f'{field}_reference'), factor)
         _measured(ax, of(field), factor)
         ax.set_ylabel(label)
+    # the sensors are in the valve block, at the ends of the hoses
+    at = 'hose ' if isinstance(actuator.sheet.plant.hoses, LumpedHoses) else ''
     for name, signal, color in (
-            ('A', of('pressure_a'), 'C2'), ('B', of('pressure_b'), 'C4'),
+            (f'{at}A', of('pressure_a'), 'C2'), (f'{at}B', of('pressure_b'), 'C4'),
             ('supply', signals.drawn(signals.supply_of(actuator.name)), 'gray')):
         pressure.plot(signal.t, signal.values / MPA, label=name, color=color)
     cushion = of('cushion_pressure')
@@ -90,17 +95,24 @@ def circuit_signals(supply: SupplyConfig, signals: Signals) -> dict[str, Signal]
 
 
 def circuit_figure(supply: SupplyConfig, signals: Signals) -> Figure:
-    """Draw the pressures of a circuit's manifolds, and the temperatures of its accumulators."""
+    """
+    Draw the pressures of a circuit's manifolds, and the temperatures of its accumulators.
+
+    The return side, whose pressures are a hundredth of the others, has axes of its own.
+    """
     found = circuit_signals(supply, signals)
-    gas = {name for name in found if name.endswith(GAS)}
-    n = bool(gas) + (len(gas) < len(found))
-    figure, axes = stack(n, f'{supply.name} (circuit)', 2.2 + 2.2 * n)
-    for ax, names, scale, label in (
-            (axes[0], found.keys() - gas, MPA, _PRESSURE),
-            (axes[-1], gas, 1.0, 'temperature of gas, celsius')):
-        for name in (own for own in found if own in names):
-            ax.plot(found[name].t, found[name].values / scale, label=part_of(name))
-            ax.set_ylabel(label)
+    sheet = supply.sheet
+    back = sheet.with_return() if isinstance(sheet, CircuitSupply) else frozenset()
+    groups: dict[str, list[str]] = {}
+    for name in found:
+        groups.setdefault(_GAS if name.endswith(GAS) else _BACK if part_of(name) in back
+                          else _PRESSURE, []).append(name)
+    figure, axes = stack(len(groups), f'{supply.name} (circuit)', 2.0 + 2.2 * len(groups))
+    for ax, label in zip(axes, (own for own in (_PRESSURE, _BACK, _GAS) if own in groups)):
+        for name in groups[label]:
+            values = found[name].values / (1.0 if label == _GAS else MPA)
+            ax.plot(found[name].t, values, label=part_of(name), linewidth=1.0)
+        ax.set_ylabel(label)
     return finish(figure, axes)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from isa_ros.analysis.report.ending import ending
 from isa_ros.analysis.report.energy import (
-    energy_legend, energy_table, parts_table, recorded_accounts)
+    energy_legend, energy_table, PARTS_LEGEND, parts_table, recorded_accounts)
 from isa_ros.analysis.report.events import event_rows, recorded_events
 from isa_ros.analysis.report.figures import circuit_signals, figures
 from isa_ros.analysis.report.paper_figures import paper_figure
@@ -118,7 +118,7 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
             is_gas = name.endswith(GAS)
             series = recorded.values if is_gas else recorded.values / MPA
             values.append((
-                f'{name.rpartition(".")[0]} {"gas" if is_gas else "pressure"}',
+                f'{name.rpartition(".")[0]} {"gas temperature" if is_gas else "pressure"}',
                 float(series.min()), float(series.max()), 'celsius' if is_gas else 'MPa gauge'))
     for leg in signals.run.legs:
         if f'{leg.name}.foot_force' not in signals:
@@ -163,8 +163,9 @@ def _energy(bag: Path) -> str:
     if accounts is None:
         return ''
     parts = parts_table(accounts)
+    of_parts = f'{_table(parts)}<p>{html.escape(PARTS_LEGEND)}</p>' if parts else ''
     return (f'<h2>Oil and energy</h2>{_table(energy_table(accounts))}'
-            f'<p>{html.escape(energy_legend(accounts))}</p>{_table(parts) if parts else ""}')
+            f'<p>{html.escape(energy_legend(accounts))}</p>{of_parts}')
 
 
 def _rows(values: list[tuple[str, float, float, str]]) -> str:
