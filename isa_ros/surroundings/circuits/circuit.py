@@ -13,7 +13,7 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError, RunError
 from isa_ros.surroundings.circuits.network import circuit_advance, circuit_rates
 from isa_ros.surroundings.circuits.nodes import (
-    gas_volume, node_capacity, node_energy, node_pressure)
+    feeding_capacity, gas_volume, node_capacity, node_energy, node_pressure)
 from isa_ros.surroundings.circuits.plan import Network, network_of
 from isa_ros.surroundings.circuits.rest import at_rest, of_return
 from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
@@ -148,7 +148,7 @@ class Circuit:
         network, n = self._network, len(self._network.nodes)
         return [FedNode(
             float(self._held[k]),
-            float(node_capacity(self._held[k], self.state[n + k], network.nodes[k])),
+            float(feeding_capacity(self._held[k], self.state[n + k], network.nodes[k])),
             float(self._rates[k]),
             float(inflow_slope(k, self.state, self._held, network.elements)),
             float(inflow_trend(k, self.state, self._rates, self._held, network.nodes,

@@ -74,6 +74,14 @@ def node_capacity(pressure, theta, node):
 
 
 @kernel
+def feeding_capacity(pressure, theta, node):
+    """Return `node_capacity`, m3/Pa; without end of a cavity, whose pressure does not change."""
+    if pressure <= VAPOUR:
+        return math.inf
+    return node_capacity(pressure, theta, node)
+
+
+@kernel
 def node_energy(content, theta, node):
     """
     Return what is stored in a node, more than at atmospheric pressure without gas, J  (E10).

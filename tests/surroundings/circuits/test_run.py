@@ -14,6 +14,7 @@ from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
+from isa_ros.tick.trips import TripWarning
 import numpy as np
 import pytest
 from tests.replay.test_replay_faults import content, replayed, result_of
@@ -162,3 +163,31 @@ def test_a_report_has_a_table_of_the_parts(result: Result, tmp_path: Path) -> No
     assert given == pytest.approx(sum(float(whole[key]) for key in (
         'lost, J', 'stored, J', 'return, J', 'actuators, J')), abs=0.01 * given)
     assert whole['oil in, l'] == ''
+
+
+def test_the_pressure_of_an_empty_manifold_stands_at_the_vapour_s() -> None:
+    """
+    What actuators draw makes its cavity larger, and no tension of the oil.
+
+    Within a tick that begins with little oil the pressure may fall on, by what is drawn in it.
+    """
+    with pytest.warns(TripWarning):
+        result = load('pump_station', duration=0.35).simulate(
+            faults=[{'t_s': 0.02, 'supply': 'station', 'set': {'dump.opened': 1}}])
+    node = result['station/press.pressure'][:-1]
+    empty = np.flatnonzero(node <= -0.99e5) + 1     # the ticks that begin so
+    read = result['left.supply_pressure']
+    assert len(empty) > 10 and read[empty].min() == pytest.approx(-1e5, abs=2e4)
+    assert read.min() > -0.6e6
+
+
+def test_a_cavity_has_no_elastance() -> None:
+    surroundings = surroundings_of(RUN.configuration)
+    station = surroundings._circuits[0]
+    press = station._nodes[0]
+    full = station.nodes()[0].capacity
+    assert 0.0 < full < 1e-11
+    station._held[press] = -1e5
+    assert station.nodes()[0].capacity == np.inf
+    station._held[press] = -0.999e5
+    assert station.nodes()[0].capacity == pytest.approx(full, rel=1e-9, abs=0.0)
