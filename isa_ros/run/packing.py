@@ -18,14 +18,14 @@ from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.body_messages import prepared, type_of
 from isa_ros.run.link_packing import LinkWords
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
+from isa_ros.run.supply_messages import of_supply, SIGNALS
 from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
 from msg_adapters.actuator_messages import (
     CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
-from msg_adapters.sensor_messages import (
-    fluid_pressure, PRESSURE_TYPE, temperature, TEMPERATURE_TYPE)
+from msg_adapters.sensor_messages import fluid_pressure, temperature
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -37,8 +37,7 @@ _APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'dampin
             'reference', 'kinds')
 _PRESSURES = ('pressure_a', 'pressure_b', 'cushion_pressure')
 _PRESSURE_A, _PRESSURE_B, _CUSHION = (_SAMPLE.index(name) for name in _PRESSURES)
-_OF_SUPPLY = ('pressure', 'return_pressure', 'gas_temperature')
-_GAS = _SUPPLY.index(_OF_SUPPLY[2])
+_GAS = _SUPPLY.index(SIGNALS[2])
 
 
 class Names(NamedTuple):
@@ -138,9 +137,8 @@ class Packer:
                           f'/{name}', name in names.heated, row in self._links.rows,
                           name in names.cushioned)]
         for supply, published in names.supplies:
-            found += [_of_supply(supply, signal, at + _OF_SUPPLY.index(signal))
-                      for signal in published]
-            at += len(_OF_SUPPLY)
+            found += [of_supply(supply, signal, at) for signal in published]
+            at += len(SIGNALS)
         if names.supplies:
             found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
         of_bodies = [own for messages in names.bodies.values() for own in messages]
@@ -293,15 +291,7 @@ def _n_columns(rows: PublishedRows) -> int:
     """Return the number of values of all rows, without the words of links."""
     body = sum(floats(sample).size for sample in rows.bodies.values())
     own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-    return len(rows.samples) * own + len(rows.supplies) * len(_OF_SUPPLY) + body
-
-
-def _of_supply(supply: str, signal: str, column: int) -> tuple[Topic, Prepared]:
-    """Return topic and message of a signal of a supply or a part, value number ``column``."""
-    is_gas = signal == _OF_SUPPLY[2]
-    message = (temperature if is_gas else fluid_pressure)(coordinator_messages.WORLD_FRAME, column)
-    return Topic(coordinator_messages.supply_topic(supply, signal),
-                 TEMPERATURE_TYPE if is_gas else PRESSURE_TYPE), message
+    return len(rows.samples) * own + len(rows.supplies) * len(SIGNALS) + body
 
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
