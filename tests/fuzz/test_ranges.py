@@ -16,9 +16,10 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core import parameter
 from isa_ros.core.parameter import Parameters, SMALLEST
 from isa_ros.core.record import first_not_finite
-from isa_ros.errors import ParameterError, SimulationDiverged
+from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.plant.friction import LEAST_STICTION
 from isa_ros.scenario.scenario import idle
+from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
 from tests.fuzz.property import Broken, refused
@@ -129,9 +130,18 @@ def test_at_its_least_the_stiction_is_not_lost():
 
 
 @pytest.mark.parametrize('force', [-2e7, 2e7])
-def test_a_force_that_no_actuator_holds_ends_with_actuator_and_quantity(force):
-    with pytest.raises(SimulationDiverged, match='^isa_v5: plant.chambers.p_a = nan at t = '):
+def test_a_force_that_no_actuator_holds_is_refused_with_what_it_holds(force):
+    with pytest.raises(ConfigError, match='load.force = -?2e.07 N, must be -1.557e.04 to 2.15'):
         attempt(Case(model_run('isa_v5'), 'isa_v5', full_key('load.force', 'isa_v5'), force))
+
+
+@pytest.mark.parametrize('force', [-2e7, 2e7])
+def test_a_push_that_no_actuator_holds_ends_with_actuator_and_quantity(force):
+    """For a tick it might be held, so that nothing refuses it."""
+    push = {'t_s': 0.002, 'actuator': 'isa_v5', 'set': {'load.force': force}}
+    run = load(model_run('isa_v5'), duration=0.02)
+    with pytest.raises(SimulationDiverged, match='^isa_v5: plant.chambers.p_a = nan at t = '):
+        run.simulate(faults=[push])
 
 
 def test_a_guard_that_is_missing_is_found(monkeypatch):
