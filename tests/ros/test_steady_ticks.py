@@ -14,6 +14,7 @@ from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.lockstep.steady_ticks import steady_ticks, SteadyTicks
+from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_tick
 import numpy as np
 import pytest
@@ -151,3 +152,23 @@ def test_a_setpoint_of_a_publisher_takes_effect(observer, looped):
         assert not robot.rows.applied['kinds'][0]
         assert robot.nodes[1].is_watched() and not robot.nodes[0].is_watched()
         assert looped
+
+
+def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch):
+    """With real actuators: the same rows, and rounds that were taken."""
+    taken = []
+    take = TickRound.take
+
+    def note(self):
+        taken.append(1)
+        take(self)
+    monkeypatch.setattr(TickRound, 'take', note)
+    monkeypatch.setattr(lockstep, 'TOPIC_CHECK_S', 100.0)
+    results = []
+    for are_possible in True, False:
+        with driven(observer) as robot:
+            robot.transport._rounds._are_possible = are_possible
+            results.append([robot.tick(k, target(k)) for k in range(50)])
+            robot.transport.close()
+        assert 40 <= len(taken) <= 50   # all but those with a changed parameter and the first
+    assert results[0] == results[1]

@@ -33,7 +33,7 @@ pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='the loop is machine cod
 
 def made(is_linked: bool = False) -> SmartActuator:
     config: ActuatorConfig = default_actuator('isa_v5', 'kfe')
-    sheet = replace(config.sheet, link=link_of()) if is_linked else config.sheet
+    sheet = replace(config.sheet, link=link_of(delay_cycles=2.0)) if is_linked else config.sheet
     actuator = SmartActuator(replace(config, sheet=sheet, load=None), DEFAULT_TIMING)
     actuator.start(0.01, 0.0, 20.7e6, 0.0)
     for _ in range(3):      # until its first parameters are in force
@@ -143,6 +143,17 @@ def test_the_loop_ends_where_something_is_published(bench, tick, target):
     news = tick if target is not None else SECOND - 1
     assert bench.run(tick - 2, most=9) is Ended.ANSWERED
     assert bench.loop.done == news - (tick - 2) + 1
+
+
+def test_a_command_handed_to_a_link_is_published():
+    """Before a frame brings it to the REU."""
+    bench = Bench(is_linked=True)
+    for k in range(7, 12):
+        bench.coordinator.send(encoded(k, target=0.02 if k == 9 else None))
+    assert bench.run(7, most=9) is Ended.ANSWERED and bench.loop.done == 3
+    assert bench.actuator.memory.sent['kinds'].tolist() == [HAS_SETPOINT]
+    assert bench.actuator.memory.applied['kinds'].tolist() == [0]
+    closed(bench)
 
 
 def spoilt(name: str) -> bytes:

@@ -15,6 +15,7 @@ from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.mixed_transport import MixedTransport
+from isa_ros.nodes.lockstep.socket_rounds import warm_up_rounds
 from isa_ros.nodes.lockstep.steady_ticks import warm_up_ticks
 from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.discovery import refuse_off
@@ -29,7 +30,7 @@ from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.calling import calling
-from isa_ros.tick.exchange import Transport
+from isa_ros.tick.exchange import Rows, Transport
 from isa_ros.tick.in_process import InProcess
 import rclpy
 from rclpy.node import Node
@@ -118,6 +119,7 @@ def _participants(
     actuators = warmed_up(run)
     if not are_here:
         warm_up_ticks(actuators[0])
+        warm_up_rounds(Rows(len(actuators), surroundings))
     expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
                 for actuator in actuators]
     expected += [Expected(name, '') for name in run.controllers]

@@ -1,5 +1,8 @@
 """What arrives from participants: discard what is not of the run, refuse what prevents it."""
 
+from collections.abc import Sequence, Set
+from typing import NamedTuple
+
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.nodes.lockstep.expected import Participants
 from isa_ros.nodes.middleware.domain import another_coordinator_of
@@ -15,6 +18,16 @@ _WITH_PARTS = {AnswerKind.READY: FIRST, AnswerKind.DONE: 0, AnswerKind.RESTORED:
 """Kinds of answers with the parts of a role, and the first of these."""
 
 
+class Awaited(NamedTuple):
+    """The step that answers are waited for."""
+
+    run_id: int
+    number: int
+    """Of the tick or of the request."""
+    step: str
+    """In words."""
+
+
 class AnswerChecks:
     """Checks the answers that arrive at the coordinator ``node``."""
 
@@ -22,8 +35,7 @@ class AnswerChecks:
         self._node = node
         self._run = participants
         self._participants = participants.expected
-        self._remote = frozenset(
-            range(participants.first_remote, len(participants.expected)))
+        self._remote = participants.remote
         self._unreported = {participant.name for participant in self._participants}
         self.identities: dict[int, bytes] = {}
         """Identity of the node of each participant that has answered."""
@@ -72,6 +84,29 @@ class AnswerChecks:
                 'configured; start both with the same file')
         return True
 
+    def is_awaited(
+            self, answer: Answer, awaited: Awaited, kind: AnswerKind, missing: Set[int]) -> bool:
+        """
+        Return whether an answer is of a kind that is waited for; refuse what prevents the run.
+
+        ``missing`` are the participants that have not answered yet. Raises as `refuse_failure`.
+        """
+        if answer.run_id != awaited.run_id or answer.kind is AnswerKind.BUSY:
+            return False
+        if answer.kind is AnswerKind.READY:
+            self.is_ready(answer, awaited.run_id)
+            return False
+        if answer.kind is AnswerKind.UNBOUND:
+            self.report_unbound(answer)
+            return False
+        if answer.tick != awaited.number or answer.participant not in missing:
+            if answer.is_repeated:
+                return False
+            # A participant answers each step once.
+            raise self.two_nodes(answer.participant)
+        self.refuse_failure(answer, awaited.step)
+        return answer.kind is kind
+
     def report_unbound(self, answer: Answer) -> None:
         """Log once a node outside the run with the name of a participant; the run goes on."""
         name = (answer.parts[0] or b'').decode()
@@ -108,3 +143,11 @@ class AnswerChecks:
         return ConfigError(
             f'{self._participants[participant].name}: two nodes of this name answer in '
             f'{self._where()}, must be one')
+
+    def none_of(self, missing: Sequence[int], join_s: float) -> RunError:
+        names = ', '.join(self._participants[k].name for k in missing)
+        # A controller's node always joins; an actuator's may run alone instead.
+        how = ' with lockstep:=true' if missing[0] < len(self._run.starts) else ''
+        return RunError(
+            f'{names}: no answer before tick 0 after {join_s:g} s; start it{how} in '
+            f'this ROS_DOMAIN_ID and namespace, {self._node.get_namespace()}')

@@ -1,14 +1,15 @@
 """The coordinator's end of the private wire, to participants in other processes."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 import secrets
 import time
 from typing import Any
 
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
+from isa_ros.nodes.lockstep.answer_checks import AnswerChecks, Awaited
 from isa_ros.nodes.lockstep.expected import Limits, Participants
+from isa_ros.nodes.lockstep.socket_rounds import SocketRounds
 from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.nodes.middleware.domain import refuse_other_coordinator
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
@@ -50,9 +51,7 @@ class LockstepTransport:
         self._node = node
         self._run = participants
         self._participants = participants.expected
-        self._remote = frozenset(
-            range(participants.first_remote, len(participants.expected)))
-        self._has_controllers = len(participants.expected) > len(participants.starts)
+        self._remote = participants.remote
         self._limits = limits
         self._watch = watch
         self._should_stop = should_stop
@@ -62,10 +61,10 @@ class LockstepTransport:
         self._tick = 0
         self._begin_due = 0.0
         self._requests = 0
-        self._awaited = 0  # tick number that an answer must have, or the number of a request
-        self._step, self._current_step = b'', 'tick 0'
+        self._awaited, self._step = Awaited(0, 0, 'tick 0'), b''
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         self._wires = LocalWires()
+        self._rounds = SocketRounds(self._wires, participants)
         self._next_check = 0.0
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
@@ -94,6 +93,7 @@ class LockstepTransport:
             self._end()
             self._past_runs.add(self._run_id)
         self._run_id = secrets.randbits(63) + 1
+        self._awaited = self._awaited._replace(run_id=self._run_id)
         self._wires.listen(self._run_id)
         start = time.monotonic()
         complete: dict[int, Answer] = {}
@@ -114,15 +114,8 @@ class LockstepTransport:
             if self._should_stop():
                 raise Interrupted('stopped before tick 0')
             if time.monotonic() - start > self._limits.join_s:
-                raise self._no_answer([k for k in sorted(self._remote) if k not in answers])
-
-    def _no_answer(self, missing: Sequence[int]) -> RunError:
-        names = ', '.join(self._participants[k].name for k in missing)
-        # A controller's node always joins; an actuator's may run alone instead.
-        how = ' with lockstep:=true' if missing[0] < len(self._run.starts) else ''
-        return RunError(
-            f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
-            f'this ROS_DOMAIN_ID and namespace, {self._node.get_namespace()}')
+                raise self._answers.none_of(
+                    [k for k in sorted(self._remote) if k not in answers], self._limits.join_s)
 
     def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
         """Return the answers to the ``count``-th hello; wait the whole period for the last one."""
@@ -162,8 +155,9 @@ class LockstepTransport:
         self._tick = tick
         if rows.changes and self._run.first_remote == 0:
             self._change(rows.changes)
-        step = encode_tick(self._run_id, tick, rows, self._has_controllers)
-        self._send_step(f'tick {tick}', tick, step)
+        is_sent = self._rounds.send(self._run_id, tick, rows)
+        self._send_step(f'tick {tick}', tick, b'' if is_sent else encode_tick(
+            self._run_id, tick, rows, self._run.has_controllers))
 
     def _change(self, changes: Mapping[int, Mapping[str, float]]) -> None:
         number = self._next_request()
@@ -171,10 +165,15 @@ class LockstepTransport:
             self._run_id, number, changes, len(self._participants)))
         self._gather(AnswerKind.CHANGED)
 
-    def _send_step(self, what: str, awaited: int, step: bytes) -> None:
-        self._current_step, self._awaited, self._step = what, awaited, step
-        if not self._wires.send(step):
+    def _send_step(self, what: str, number: int, step: bytes) -> None:
+        """Send a step and note what is awaited; an empty one is that of the rounds, and sent."""
+        self._awaited, self._step = Awaited(self._run_id, number, what), step
+        if step and not self._wires.send(step):
             self._send(step)
+
+    def _repeat_step(self) -> None:
+        """Send the last step again, on the topic."""
+        self._send(self._step or self._rounds.step())
 
     def _next_request(self) -> int:
         """Return a number below 0 that is different for each request."""
@@ -183,7 +182,16 @@ class LockstepTransport:
 
     def receive(self, rows: Rows) -> None:
         """Wait for every participant; see `Transport`."""
-        self._fill(rows, self._gather(AnswerKind.DONE))
+        begin = time.monotonic()
+        arrived = self._rounds.receive() if begin < self._next_check else []
+        if arrived is None:
+            requested = self._gather(
+                AnswerKind.DONE, [k for k in self._remote if k >= len(rows.replies)])
+            self._rounds.take()
+            self._fill(rows, requested)
+        else:
+            waited = min(time.monotonic() - begin, 2.0 * SLICE_S)
+            self._fill(rows, self._gather(AnswerKind.DONE, self._remote, arrived, waited))
 
     def idle(self, seconds: float = IDLE_S) -> None:
         """Announce that the run continues, and check for lost participants and second nodes."""
@@ -195,7 +203,7 @@ class LockstepTransport:
         if data is not None:
             answer = self._answers.decoded(data, self._run_id)
             if answer is not None:
-                self._is_expected(answer, AnswerKind.DONE, set())
+                self._answers.is_awaited(answer, self._awaited, AnswerKind.DONE, set())
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant."""
@@ -227,14 +235,20 @@ class LockstepTransport:
             else:
                 merge_requests(np.frombuffer(parts[k][0] or b'', COMMAND), rows.requests)
 
-    def _gather(self, kind: AnswerKind) -> dict[int, Parts]:
-        """Wait until every participant has answered and return the parts of each."""
+    def _gather(
+            self, kind: AnswerKind, participants: Collection[int] | None = None,
+            arrived: Sequence[bytes] = (), waited: float = 0.0) -> dict[int, Parts]:
+        """
+        Wait until participants, None: all, have answered; return the parts of each.
+
+        ``arrived`` are messages that have already, and ``waited`` is the time spent so far, s.
+        """
         parts: dict[int, Parts] = {}
-        missing = set(self._remote)
-        waited, repeat_at = 0.0, REPEAT_S
+        missing = set(self._remote if participants is None else participants)
+        messages, repeat_at = iter(arrived), REPEAT_S
         while missing:
             begin = time.monotonic()
-            data = self._next_answer()
+            data = next(messages, None) or self._next_answer()
             if data is None and self._watch() is not None:
                 data = self._next_answer()  # may have been sent before it was lost
             if data is None:
@@ -244,10 +258,11 @@ class LockstepTransport:
                 self._check_waited(waited, missing)
                 if waited >= repeat_at:
                     repeat_at += REPEAT_S
-                    self._send(self._step)
+                    self._repeat_step()
                 continue
             answer = self._answers.decoded(data, self._run_id)
-            if answer is not None and self._is_expected(answer, kind, missing):
+            if answer is not None and self._answers.is_awaited(
+                    answer, self._awaited, kind, missing):
                 parts[answer.participant] = answer.parts
                 missing.discard(answer.participant)
         return parts
@@ -263,26 +278,8 @@ class LockstepTransport:
             self._announce()
         data = self._wires.wait(SLICE_S)
         if data is None and not self._wires.is_open:
-            self._send(self._step)  # repeated: an answer may have been lost with the sockets
+            self._repeat_step()  # an answer may have been lost with the sockets
         return data
-
-    def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
-        """Return whether an answer is one of those waited for; refuse what prevents the run."""
-        if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
-            return False
-        if answer.kind is AnswerKind.READY:
-            self._answers.is_ready(answer, self._run_id)
-            return False
-        if answer.kind is AnswerKind.UNBOUND:
-            self._answers.report_unbound(answer)
-            return False
-        if answer.tick != self._awaited or answer.participant not in missing:
-            if answer.is_repeated:
-                return False
-            # A participant answers each step once.
-            raise self._answers.two_nodes(answer.participant)
-        self._answers.refuse_failure(answer, self._current_step)
-        return answer.kind is kind
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:
         names = ', '.join(self._participants[k].name for k in sorted(missing))
@@ -290,7 +287,7 @@ class LockstepTransport:
             raise Interrupted(f'stopped in tick {self._tick}, which {names} did not end')
         if waited >= self._limits.tick_s:
             raise RunError(
-                f'{names}: no answer to {self._current_step} after {waited:.1f} s, must come '
+                f'{names}: no answer to {self._awaited.step} after {waited:.1f} s, must come '
                 f'within {self._limits.tick_s:g} s')
 
     def close(self) -> None:

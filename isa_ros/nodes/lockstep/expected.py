@@ -33,3 +33,13 @@ class Participants(NamedTuple):
     step_ns: int
     first_remote: int = 0
     """Index of the first participant in another process."""
+
+    @property
+    def has_controllers(self) -> bool:
+        """Return whether there are others than actuators."""
+        return len(self.expected) > len(self.starts)
+
+    @property
+    def remote(self) -> frozenset[int]:
+        """Return the indices of those in other processes."""
+        return frozenset(range(self.first_remote, len(self.expected)))

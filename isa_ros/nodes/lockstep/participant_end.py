@@ -72,7 +72,7 @@ class ParticipantEnd:
         self._has_begun = False
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
-        self._last: tuple[AnswerKind, Parts] = AnswerKind.DONE, ()
+        self._last: tuple[AnswerKind, Parts | None] = AnswerKind.DONE, ()  # None: see ticks
         self._last_message = 0.0  # s, monotonic clock: last message of this run's coordinator
         self._is_abandoned = False
 
@@ -123,13 +123,11 @@ class ParticipantEnd:
         if ticks.done:
             self._last_message = time.monotonic()
             self._next_tick += ticks.done
+            ticks.end()
             last = Step(StepKind.TICK, self._run_id, self._next_tick - 1, 0, b'')
-            if ended in (Ended.UNSENT, Ended.BROKEN):
-                is_done = self._answer_to(last, AnswerKind.DONE, ticks.end)
-            else:
-                is_done = True
-                self._answered, self._last = (last.kind, last.tick), (AnswerKind.DONE, ticks.end())
-            if is_done:
+            self._answered, self._last = (last.kind, last.tick), (AnswerKind.DONE, None)
+            if ended not in (Ended.UNSENT, Ended.BROKEN) or self._answer_to(
+                    last, AnswerKind.DONE, ticks.parts):
                 ticks.publish()
         if ended is Ended.NOTHING:
             return wire.take()
@@ -261,6 +259,8 @@ class ParticipantEnd:
     def _repeat(self, step: Step) -> None:
         """Send the last answer again: it, or the first request, may have been lost."""
         kind, parts = self._last
+        if parts is None:
+            parts = self._ticks.parts() if self._ticks is not None else ()
         self._send_answer(encode_answer(
             kind, self._run_id, step.tick, self._index, parts, is_repeated=True))
 

@@ -100,7 +100,7 @@ class ActuatorRole:
         self._index, self._n_actuators = index, step.rows
         self.has_feed = step.roster().has_supply_ports
         self._actuator.start(*step.start(index).item())
-        return self._parts()
+        return self.parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick of another number of actuators, or with invalid numbers."""
@@ -119,17 +119,12 @@ class ActuatorRole:
         if self.has_feed:
             self._actuator.memory.feeds[0] = step.feed(self._index)
         self._actuator.tick(step.port(self._index))
-        return self._parts()
+        return self.parts()
 
     @property
     def is_settled(self) -> bool:
         """Return whether the next tick changes no parameter, and answers with none."""
         return not self._changes and self._actuator.is_settled
-
-    def ticked(self, n: int, broken: int) -> Parts:
-        """End n ticks that were run from outside, of which the last returned ``broken``."""
-        self._actuator.end_ticks(n, broken)
-        return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:
         """Keep the changes for the next tick."""
@@ -139,9 +134,10 @@ class ActuatorRole:
     def restore(self, snapshot: bytes) -> Parts:
         """Continue from a snapshot."""
         self._actuator.restore(snapshot)
-        return self._parts()
+        return self.parts()
 
-    def _parts(self) -> Parts:
+    def parts(self) -> Parts:
+        """Return the parts of the answer to the last tick."""
         own = self._actuator.memory
         return actuator_parts(own.replies, own.observed, own.applied,
                               self._actuator.applied_parameters, own.sent,

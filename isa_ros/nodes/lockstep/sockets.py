@@ -15,6 +15,7 @@ import struct
 import sys
 
 from isa_ros.nodes.middleware.handles import has_handles
+from isa_ros.nodes.middleware.mailboxes import SLICE_S
 
 LARGEST = 65536
 """Bytes of the largest message."""
@@ -45,6 +46,14 @@ def _socket() -> socket.socket:
     return made
 
 
+def _wait_by_itself(end: socket.socket, slice_s: float) -> None:
+    """Let the kernel end a wait after ``slice_s``: nobody need poll before it reads."""
+    end.setblocking(True)
+    seconds, part = divmod(slice_s, 1.0)
+    end.setsockopt(
+        socket.SOL_SOCKET, socket.SO_RCVTIMEO, _TIME.pack(int(seconds), int(part * 1e6)))
+
+
 class LocalWire:
     """A participant's end of the socket."""
 
@@ -61,11 +70,7 @@ class LocalWire:
         try:
             end.connect(_name(run_id))
             end.send(identity)
-            # The kernel's timeout: Python need not poll before it reads.
-            end.setblocking(True)
-            seconds, part = divmod(slice_s, 1.0)
-            end.setsockopt(
-                socket.SOL_SOCKET, socket.SO_RCVTIMEO, _TIME.pack(int(seconds), int(part * 1e6)))
+            _wait_by_itself(end, slice_s)
         except OSError:
             end.close()
             return None
@@ -119,6 +124,7 @@ class LocalWires:
     def __init__(self) -> None:
         self._listening: socket.socket | None = None
         self._ends: dict[int, socket.socket] = {}  # by file descriptor
+        self._numbers: dict[int, int] = {}  # file descriptor by participant
         self._ready: list[int] = []
         if is_possible():
             self._epoll = select.epoll()
@@ -146,18 +152,18 @@ class LocalWires:
         Participants connect before they answer a hello on the topics. Later connections are
         refused.
         """
-        missing = set(identities.values())
+        missing = {identity: participant for participant, identity in identities.items()}
         try:
             for _ in range(len(missing) + _MOST_REJECTED):
                 if self._listening is None or not missing:
                     break
                 end, _ = self._listening.accept()
-                end.setblocking(False)
+                _wait_by_itself(end, SLICE_S)
                 identity = _first_message(end)
                 if identity not in missing or not _is_of_this_user(end):
                     end.close()
                     continue
-                missing.remove(identity)
+                self._numbers[missing.pop(identity)] = end.fileno()
                 self._ends[end.fileno()] = end
                 self._epoll.register(end.fileno(), select.EPOLLIN)
         except OSError:
@@ -167,12 +173,16 @@ class LocalWires:
             self.close()
         return self.is_open
 
+    def numbers(self) -> list[int]:
+        """Return the file descriptors in the order of the participants; they wait `SLICE_S`."""
+        return [self._numbers[participant] for participant in sorted(self._numbers)]
+
     def send(self, message: bytes) -> bool:
         """Send to all and return True; on failure close all and return False."""
         try:
             if len(message) <= LARGEST:
                 for end in self._ends.values():
-                    end.send(message)
+                    end.send(message, socket.MSG_DONTWAIT)
                 return self.is_open
         except OSError:
             pass
@@ -189,7 +199,7 @@ class LocalWires:
             self._ready = [number for number, _ in self._epoll.poll(timeout_s)]
         while self._ready:
             try:
-                data = self._ends[self._ready.pop()].recv(LARGEST)
+                data = self._ends[self._ready.pop()].recv(LARGEST, socket.MSG_DONTWAIT)
             except BlockingIOError:
                 continue
             except OSError:
@@ -206,6 +216,7 @@ class LocalWires:
             self._epoll.unregister(number)
             end.close()
         self._ends.clear()
+        self._numbers.clear()
         self._ready.clear()
 
     def _stop_listening(self) -> None:
@@ -216,7 +227,7 @@ class LocalWires:
 
 def _first_message(end: socket.socket) -> bytes:
     try:
-        return end.recv(_IDENTITY_BYTES)
+        return end.recv(_IDENTITY_BYTES, socket.MSG_DONTWAIT)
     except OSError:
         return b''
 

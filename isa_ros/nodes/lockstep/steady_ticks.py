@@ -66,9 +66,13 @@ class SteadyTicks:
         self._is_due = ended is Ended.DUE
         return ended
 
-    def end(self) -> Parts:
+    def end(self) -> None:
+        """Move the actuator's time on by the ticks of `run`."""
+        self._node.actuator.end_ticks(self._loop.done, 0)
+
+    def parts(self) -> Parts:
         """
-        End the ticks of `run`; return the parts of the answer to the last one.
+        Return the parts of the answer to the last tick.
 
         Raises
         ------
@@ -76,7 +80,8 @@ class SteadyTicks:
             A state is no longer finite.
 
         """
-        return self._role.ticked(self._loop.done, self._loop.broken)
+        self._node.actuator.end_ticks(0, self._loop.broken)
+        return self._role.parts()
 
     def publish(self) -> None:
         """Publish the results of the last tick, where there is a subscription."""

@@ -7,7 +7,7 @@ from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.nodes.lockstep import steady_ticks as module
 from isa_ros.nodes.lockstep.sockets import LARGEST
 from isa_ros.nodes.lockstep.steady_ticks import MOST, SteadyTicks
-from isa_ros.run.wire.answering import Ended
+from isa_ros.run.wire.answering import _DONE, Ended
 from isa_ros.run.wire.answers import decode_answer
 from isa_ros.run.wire.steps import decode_step
 import numpy as np
@@ -41,8 +41,7 @@ class Quiet:
     def publish(self, n: int) -> None:
         self.published.append(n)
 
-    def ticked(self, n: int, broken: int) -> list[bytes]:
-        self.actuator.end_ticks(n, broken)
+    def parts(self) -> list[bytes]:
         return [b'parts']
 
 
@@ -125,11 +124,26 @@ def test_a_tick_that_changes_a_parameter_is_left(bench, node, ticks):
     assert ticks.take_step() == encoded(5) and not ticks.has_step
 
 
+def test_a_change_before_a_step_that_waits_leaves_it_alone(bench, node, ticks, monkeypatch):
+    """The ticks before it are not counted twice."""
+    send(bench, 5)
+    ticks.run(node, 5)
+    ticks._due_ns = 0
+    ticks._is_due = True    # as after ticks that took their time
+    send(bench, 6)
+    assert ticks._loop.run(node.number, 6, 0, 1) is Ended.DUE
+    ticks._loop._values[_DONE] = 4
+    node.on_serve = lambda: bench.actuator.tune({'force.kp': 9e-8})
+    assert ticks.run(node, 6) is Ended.OTHER and ticks.done == 0
+    assert ticks.take_step() == encoded(6)
+
+
 def test_the_time_goes_on_with_the_ticks(bench, node, ticks):
     t_ns = bench.actuator.t_ns
     send(bench, 5, 6, 7)
     ticks.run(node, 5)
-    assert ticks.end() == [b'parts'] and bench.actuator.t_ns == t_ns + 3_000_000
+    ticks.end()
+    assert ticks.parts() == [b'parts'] and bench.actuator.t_ns == t_ns + 3_000_000
     ticks.publish()
     assert node.published == [3]
 

@@ -1,10 +1,13 @@
 """Lost messages, and changes between sockets and topics."""
 
 from collections.abc import Callable
+import socket
 
+from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.nodes.lockstep import coordinator_end as lockstep, sockets as local_wire
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.run.wire.coordinating import TickRound
 import pytest
 from tests.ros.lockstep.participants import (
     begin, DEADLINE_S, is_by_socket, make_transport, Scripted, spinning, tick)
@@ -28,6 +31,8 @@ def drop_next(end: LockstepTransport | ParticipantEnd, carrier: str) -> None:
     """Lose the next message that this end sends."""
     wire = end._wires if isinstance(end, LockstepTransport) else end._wire
     assert is_by_socket(end) == (carrier == 'sockets')
+    if isinstance(end, LockstepTransport):
+        end._rounds._are_possible = False   # which send by themselves
     if carrier == 'sockets':
         wire.send = dropping(wire.send)
     else:
@@ -43,6 +48,34 @@ def test_a_lost_step_is_asked_for_again(observer, carrier):
         assert tick(transport, 0) == [1.0, 2.0]
         assert tick(transport, 1) == [2.0, 3.0]
     assert stepper.ticks == 2
+
+
+@pytest.mark.skipif(not IS_COMPILED, reason='rounds are machine code')
+def test_a_step_that_a_round_loses_is_asked_for_again(observer, monkeypatch, carrier):
+    """It is then the step of that round that the topic carries."""
+    nowhere, _ = ends = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    send, lost = TickRound.send, []
+
+    def send_but_the_third(self: TickRound, number: int) -> bool:
+        if number != 2 or lost:
+            return send(self, number)
+        lost.append(number)
+        sockets, self._own.sockets[:] = self._own.sockets.copy(), nowhere.fileno()
+        is_sent = send(self, number)
+        self._own.sockets[:] = sockets
+        return is_sent
+    monkeypatch.setattr(TickRound, 'send', send_but_the_third)
+    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.2)
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        transport = make_transport(observer)
+        rows = begin(transport)
+        for number in range(20):
+            assert tick(transport, number, rows) == [1.0 + number, 2.0 + number]
+        assert lost == ([2] if carrier == 'sockets' else [])
+    assert steppers['haa'].ticks == steppers['kfe'].ticks == 20
+    for end in ends:
+        end.close()
 
 
 def test_a_lost_answer_is_given_again_without_another_tick(observer, ends, carrier):

@@ -1,0 +1,73 @@
+"""The C library called from kernels."""
+
+import socket
+import time
+
+from isa_ros.core.kernel import IS_COMPILED, kernel
+from isa_ros.core.system_calls import (
+    AT_ONCE, copy_memory, monotonic_ns, receive, send, system_calls)
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='they are machine code')
+
+
+@kernel
+def received(system, number, address, size, flags):
+    return receive(system, number, address, size, flags)
+
+
+@kernel
+def sent(system, number, address, size, flags):
+    return send(system, number, address, size, flags)
+
+
+@kernel
+def copied(system, target, source, size):
+    copy_memory(system, target, source, size)
+
+
+@kernel
+def now(system):
+    return monotonic_ns(system)
+
+
+def test_messages_go_and_come():
+    first, second = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    system, memory = system_calls(), np.arange(8, dtype=np.uint8)
+    number, address = first.fileno(), memory.ctypes.data
+    assert received(system, number, address, 8, AT_ONCE) == -1
+    second.send(b'abc')
+    assert received(system, number, address + 2, 8, 0) == 3
+    assert memory.tobytes() == b'\0\1abc\5\6\7'
+    assert sent(system, number, address + 1, 4, 0) == 4
+    assert second.recv(99) == b'\1abc'
+    second.close()
+    assert sent(system, number, address, 8, 0) == -1    # and no signal ends the process
+    assert received(system, number, address, 8, 0) == 0
+    first.close()
+    assert received(system, number, address, 8, 0) == -1
+
+
+def test_a_full_queue_does_not_wait_at_once():
+    first, second = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    system, memory = system_calls(), np.zeros(60_000, np.uint8)
+    n = 0
+    while sent(system, first.fileno(), memory.ctypes.data, memory.size, AT_ONCE) > 0:
+        n += 1
+    assert 0 < n < 1000
+    first.close()
+    second.close()
+
+
+def test_the_time_is_that_of_python():
+    system = system_calls()
+    before = time.monotonic_ns()
+    found = now(system)
+    assert before <= found <= time.monotonic_ns()
+
+
+def test_memory_is_copied():
+    system, source, target = system_calls(), np.arange(9.0), np.zeros(9)
+    copied(system, target.ctypes.data + 8, source.ctypes.data + 16, 24)
+    assert target.tolist() == [0.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]
