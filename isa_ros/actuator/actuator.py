@@ -250,13 +250,14 @@ class SmartActuator:
         own = self.ticked
         own.ports[0] = self.memory.ports[0] if port is None else port
         self.latch_tuning()
-        self.begin_ticks()
+        own.commands['kinds'] = 0
+        own.clock[0] = self.t_ns // PLANT_STEP_NS
         self.end_ticks(1, self.advance.run())
 
     @cached_property
     def advance(self) -> Bound:
         """
-        Return its own tick over `ticked`, between `begin_ticks` and `end_ticks`.
+        Return its own tick over `ticked`; after a `tick` others may run it too, see `end_ticks`.
 
         It is not needed where all of a process tick together.
         """
@@ -266,11 +267,6 @@ class SmartActuator:
     def is_settled(self) -> bool:
         """Return whether no tuned value takes effect at the next tick, or did at the last one."""
         return self.tuning.values.is_settled
-
-    def begin_ticks(self) -> None:
-        """Begin ticks that something else runs, without a command but those accepted."""
-        self.ticked.commands['kinds'] = 0
-        self.ticked.clock[0] = self.t_ns // PLANT_STEP_NS
 
     def end_ticks(self, n: int, broken: int) -> None:
         """Move the time on by n ticks, of which the last returned ``broken``; raise as `tick`."""

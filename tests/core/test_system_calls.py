@@ -1,6 +1,9 @@
 """The C library called from kernels."""
 
+import os
 import socket
+import subprocess
+import sys
 import time
 
 from isa_ros.core.kernel import IS_COMPILED, kernel
@@ -43,10 +46,23 @@ def test_messages_go_and_come():
     assert sent(system, number, address + 1, 4, 0) == 4
     assert second.recv(99) == b'\1abc'
     second.close()
-    assert sent(system, number, address, 8, 0) == -1    # and no signal ends the process
+    assert sent(system, number, address, 8, 0) == -1
     assert received(system, number, address, 8, 0) == 0
     first.close()
     assert received(system, number, address, 8, 0) == -1
+
+
+def test_no_signal_ends_the_process():
+    """Python ignores it, a program that calls the kernels may not."""
+    code = ('import signal, socket\n'
+            'from tests.core.test_system_calls import sent, system_calls\n'
+            'signal.signal(signal.SIGPIPE, signal.SIG_DFL)\n'
+            'first, second = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)\n'
+            'second.close()\n'
+            'system = system_calls()\n'
+            'assert sent(system, first.fileno(), system.time_at[0], 8, 0) == -1\n')
+    subprocess.run([sys.executable, '-c', code], check=True,
+                   env=os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)})
 
 
 def test_a_full_queue_does_not_wait_at_once():

@@ -34,6 +34,9 @@ class Robot:
         self.ends, self.nodes, self.rows = ends, nodes, rows_of_two()
         starts = self.transport._run.starts
         starts['position'], starts['supply_pressure'] = (0.03, 0.04), 20.7e6
+        self.join()
+
+    def join(self) -> None:
         self.transport.join(self.rows)
         self.transport.begin()
 
@@ -152,6 +155,17 @@ def test_a_setpoint_of_a_publisher_takes_effect(observer, looped):
         assert not robot.rows.applied['kinds'][0]
         assert robot.nodes[1].is_watched() and not robot.nodes[0].is_watched()
         assert looped
+
+
+def test_another_run_over_the_same_rows_is_the_same(observer, looped):
+    """It has sockets and an id of its own."""
+    with driven(observer) as robot:
+        first = [robot.tick(k, target(k)) for k in range(30)]
+        robot.join()
+        assert [robot.tick(k, target(k)) for k in range(30)] == first
+        assert robot.transport._wires.is_open
+        robot.transport.close()
+    assert looped
 
 
 def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch):

@@ -11,6 +11,7 @@ from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT
+from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.lockstep.sockets import LARGEST
 from isa_ros.run.wire.answering import AnswerLoop, Ended
@@ -76,7 +77,6 @@ class Bench:
         self.end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack('@ll', 0, 20_000))
         self.loop = AnswerLoop(self.actuator.ticked, self.actuator.advance, LARGEST)
         self.loop.expect(decode_step(encoded(7, has_feed=has_feed)), INDEX, has_feed)
-        self.actuator.begin_ticks()
 
     def run(self, tick: int, most: int = 1, until_ns: int = FAR_NS) -> Ended:
         return self.loop.run(self.end.fileno(), tick, until_ns, most)
@@ -137,7 +137,7 @@ def test_the_loop_ends_where_something_is_published(bench, tick, target):
     """At a full second, and with a command that took effect."""
     for actuator in bench.actuator, bench.twin:
         actuator.end_ticks(tick - 2 - actuator.t_ns // DEFAULT_TIMING.step_ns, 0)
-    bench.actuator.begin_ticks()
+    bench.actuator.ticked.clock[0] = bench.actuator.t_ns // PLANT_STEP_NS
     for k in range(tick - 2, tick + 3):
         bench.coordinator.send(encoded(k, target=target if k == tick else None))
     news = tick if target is not None else SECOND - 1

@@ -61,7 +61,6 @@ class SteadyTicks:
         return self._run(wire, tick, due_ns, 1 if is_watched else MOST)
 
     def _run(self, wire: LocalWire, tick: int, due_ns: int, most: int) -> Ended:
-        self._node.actuator.begin_ticks()
         ended = self._loop.run(wire.number, tick, due_ns, most)
         self._is_due = ended is Ended.DUE
         return ended
