@@ -186,3 +186,23 @@ def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch
             robot.transport.close()
         assert 40 <= len(taken) <= 50   # all but those with a changed parameter and the first
     assert results[0] == results[1]
+
+
+def test_what_is_kept_for_later_subscriptions_is_the_same(observer, looped):
+    """Applied setpoints and status, in their order, with a command at every tick of a while."""
+    found = []
+    for is_looped in True, False:
+        with driven(observer, is_looped) as robot:
+            outlet, messages = robot.nodes[1].outlet, []
+
+            def note(given, outlet=outlet, messages=messages):
+                messages.extend((slot, given[slot]) for slot, is_kept in enumerate(outlet._is_kept)
+                                if is_kept and given[slot] is not None)
+            outlet.publish = note
+            for k in range(100):
+                robot.tick(k, 0.03 + 1e-5 * k if 20 <= k < 70 else None)
+            robot.transport.snapshots()     # after all has been published
+            found.append(messages)
+            robot.transport.close()
+    assert found[0] == found[1] and len(found[0]) > 50
+    assert max(looped) > 5

@@ -14,7 +14,8 @@ from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.lockstep.sockets import LARGEST
-from isa_ros.run.wire.answering import AnswerLoop, Ended
+from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts
 from isa_ros.run.wire.steps import decode_step, encode_save, encode_tick
@@ -78,8 +79,9 @@ class Bench:
         self.loop = AnswerLoop(self.actuator.ticked, self.actuator.advance, LARGEST)
         self.loop.expect(decode_step(encoded(7, has_feed=has_feed)), INDEX, has_feed)
 
-    def run(self, tick: int, most: int = 1, until_ns: int = FAR_NS) -> Ended:
-        return self.loop.run(self.end.fileno(), tick, until_ns, most)
+    def run(self, tick: int, most: int = 1, until_ns: int = FAR_NS,
+            keeps: bool = False) -> Ended:
+        return self.loop.run(self.end.fileno(), tick, until_ns, most, keeps)
 
     def by_python(self, tick: int, target: float | None = None) -> bytes:
         """Return what Python answers to a tick."""
@@ -143,6 +145,22 @@ def test_the_loop_ends_where_something_is_published(bench, tick, target):
     news = tick if target is not None else SECOND - 1
     assert bench.run(tick - 2, most=9) is Ended.ANSWERED
     assert bench.loop.done == news - (tick - 2) + 1
+
+
+def test_commands_are_kept_for_what_is_published_of_them(bench):
+    """With the ends of their ticks; not that of the last tick, whose rows are there."""
+    targets = {8: 0.021, 9: 0.022, 11: 0.023}
+    begin = bench.actuator.t_ns
+    for k in range(7, 12):
+        bench.coordinator.send(encoded(k, target=targets.get(k)))
+    assert bench.run(7, most=5, keeps=True) is Ended.ANSWERED and bench.loop.done == 5
+    assert [(t_ns - begin, command['position'], command['kinds'])
+            for t_ns, command in bench.loop.kept()] == [
+                (2_000_000, 0.021, HAS_SETPOINT), (3_000_000, 0.022, HAS_SETPOINT)]
+    for k in range(12, 50):
+        bench.coordinator.send(encoded(k, target=0.02))
+    assert bench.run(12, most=99, keeps=True) is Ended.ANSWERED
+    assert bench.loop.done == 33 and len(bench.loop.kept()) == 32
 
 
 def test_a_command_handed_to_a_link_is_published():

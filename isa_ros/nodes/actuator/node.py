@@ -24,6 +24,7 @@ from isa_ros.requests import fill_command
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
+from msg_adapters.actuator_messages import APPLIED_SETPOINT, TOPICS
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
@@ -31,6 +32,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
+
+_APPLIED = TOPICS.index(APPLIED_SETPOINT)    # its place among an actuator's messages
 
 
 class NodeSetup(NamedTuple):
@@ -132,6 +135,17 @@ class ActuatorNode(Node):
             return
         self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))
+
+    def publish_command(self, t_ns: int, command: np.void) -> None:
+        """Publish a command that took effect in a tick before the last, which ended at t_ns."""
+        applied = self.actuator.memory.applied
+        last = applied.copy()
+        applied[0] = command
+        self._packer.pack(t_ns, t_ns - self.setup.timing.step_ns, {})
+        messages = self._packer.of_actuator(0)
+        self.outlet.publish([message if slot == _APPLIED else None
+                             for slot, message in enumerate(messages)])
+        applied[:] = last
 
     def stamp_from(self, time_ns: int) -> None:
         """Stamp messages from now on as if it were ``time_ns``, on whole ticks."""

@@ -3,7 +3,8 @@ Ticks of an actuator's node that come by socket and change nothing else, in a co
 
 Setpoints, requests and subscriptions are looked at before and after every tick while the node has
 a matched publisher of setpoints or a subscription; without any, before a tick once per `QUIET_NS`
-of host time, and at the latest every `MOST` ticks.
+of host time, and at the latest every `MOST` ticks. What is kept for later subscriptions, applied
+setpoints, is published then.
 """
 
 import time
@@ -13,7 +14,8 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.nodes.actuator.node import ActuatorNode
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.lockstep.sockets import is_possible, LARGEST, LocalWire
-from isa_ros.run.wire.answering import AnswerLoop, Ended
+from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import Step
 
@@ -30,6 +32,7 @@ class SteadyTicks:
     def __init__(self, node: ActuatorNode, role: ActuatorRole) -> None:
         self._node, self._role = node, role
         self._loop = _loop_of(node.actuator)
+        self._keeps = not node.actuator.has_link
         self._is_due = False
         self._due_ns = 0
 
@@ -61,13 +64,15 @@ class SteadyTicks:
         return self._run(wire, tick, due_ns, 1 if is_watched else MOST)
 
     def _run(self, wire: LocalWire, tick: int, due_ns: int, most: int) -> Ended:
-        ended = self._loop.run(wire.number, tick, due_ns, most)
+        ended = self._loop.run(wire.number, tick, due_ns, most, self._keeps)
         self._is_due = ended is Ended.DUE
         return ended
 
     def end(self) -> None:
-        """Move the actuator's time on by the ticks of `run`."""
+        """Move the actuator's time on by the ticks of `run`, and publish what they kept."""
         self._node.actuator.end_ticks(self._loop.done, 0)
+        for t_ns, command in self._loop.kept():
+            self._node.publish_command(t_ns, command)
 
     def parts(self) -> Parts:
         """

@@ -8,27 +8,19 @@ and their numbers only. It ends with what is left to Python, see `Ended`.
 from enum import IntEnum
 from typing import NamedTuple
 
-from isa_ros.actuator.rows import row_record
-from isa_ros.actuator.ticking import Ticked
-from isa_ros.core.bound import Bound
 from isa_ros.core.kernel import kernel
 from isa_ros.core.pointers import call_at
-from isa_ros.core.record import float_columns
-from isa_ros.core.signals import COMMAND, EVERY_KIND, LOAD_PORT, Records, SUPPLY_PORT
-from isa_ros.core.system_calls import monotonic_ns, receive, send, system_calls, SystemCalls
+from isa_ros.core.signals import COMMAND, EVERY_KIND, LOAD_PORT, SUPPLY_PORT
+from isa_ros.core.system_calls import monotonic_ns, receive, send, SystemCalls
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.run.rare_messages import is_status_due
-from isa_ros.run.wire import answers, steps
-from isa_ros.run.wire.answers import AnswerKind, encode_answer
-from isa_ros.run.wire.parts import actuator_parts, is_valid_command, PARTS
-from isa_ros.run.wire.steps import Step
+from isa_ros.run.wire.parts import is_valid_command
 from isa_ros.run.wire.words import (
-    are_finite, begins_with, copy_words, WORD, words_of, write_tick)
+    ANSWER_HEAD, are_finite, begins_with, copy_words, STEP_HEAD, WORD, write_tick)
 import numpy as np
 
-_STEP_HEAD = steps.HEADER_BYTES // WORD
-_ANSWER_HEAD = answers.HEADER_BYTES // WORD
-_PORT, _COMMAND, _FEED = (row.itemsize // WORD for row in (LOAD_PORT, COMMAND, SUPPLY_PORT))
+PORT, COMMAND_ROW, FEED = (row.itemsize // WORD for row in (LOAD_PORT, COMMAND, SUPPLY_PORT))
+"""Words of an actuator's rows in a step."""
 
 
 class Ended(IntEnum):
@@ -66,13 +58,9 @@ LOOP = np.dtype([
     ('most', 'i8'),         # ticks of a call
     ('done', 'i8'),         # ticks of the last call
     ('broken', 'i8'),       # what the last tick returned
+    ('keeps', 'i8'),        # whether a tick with a command does not end the loop
+    ('kept', 'i8'),         # number of such ticks in the last call
 ])
-_SOCKET, _TICK, _UNTIL, _MOST, _DONE, _BROKEN, _RECEIVED, _EXPECTED = (
-    float_columns(LOOP)[name] for name in (
-        'socket', 'tick', 'until_ns', 'most', 'done', 'broken', 'received', 'expected'))
-
-# Calling an enumeration takes about a microsecond; a dictionary a twentieth of it.
-_ENDED = {int(ended): ended for ended in Ended}
 
 
 class Answering(NamedTuple):
@@ -106,24 +94,28 @@ class Answering(NamedTuple):
     sent: np.ndarray
     clock: np.ndarray
     """Of a `Ticked`."""
+    kept: np.ndarray
+    """`COMMAND` that took effect in earlier ticks of the call, (m,)."""
+    kept_at: np.ndarray
+    """Plant step at the end of each of these ticks, (m,)."""
 
 
 @kernel
 def takes_step(own):
     """Return whether the message received is the expected tick; copy its rows if so."""
     loop = own.loop[0]
-    write_tick(loop.tick, own.head, _STEP_HEAD)
+    write_tick(loop.tick, own.head, STEP_HEAD)
     if loop.received != loop.expected or not begins_with(own.head, own.step):
         return False
-    if not are_finite(own.values, loop.port // 2, _PORT // 2) or (
-            loop.feed and not are_finite(own.values, loop.feed // 2, _FEED // 2)):
+    if not are_finite(own.values, loop.port // 2, PORT // 2) or (
+            loop.feed and not are_finite(own.values, loop.feed // 2, FEED // 2)):
         return False
-    copy_words(own.step, loop.command, own.command_words, 0, _COMMAND)
+    copy_words(own.step, loop.command, own.command_words, 0, COMMAND_ROW)
     if not is_valid_command(own.commands[0], EVERY_KIND):
         return False
-    copy_words(own.step, loop.port, own.port_words, 0, _PORT)
+    copy_words(own.step, loop.port, own.port_words, 0, PORT)
     if loop.feed:
-        copy_words(own.step, loop.feed, own.feed_words, 0, _FEED)
+        copy_words(own.step, loop.feed, own.feed_words, 0, FEED)
     return True
 
 
@@ -131,7 +123,7 @@ def takes_step(own):
 def write_answer(is_sent, own):
     """Write an answer from the rows of the tick that has ended; ``is_sent`` is 0 or 1."""
     loop, answer = own.loop[0], own.answers[is_sent]
-    write_tick(loop.tick, answer, _ANSWER_HEAD)
+    write_tick(loop.tick, answer, ANSWER_HEAD)
     at = loop.rows
     for rows in (own.reply_words, own.sample_words, own.applied_words):
         copy_words(rows, 0, answer, at, len(rows))
@@ -145,18 +137,31 @@ def write_answer(is_sent, own):
 
 @kernel
 def has_news(own):
-    """Return whether a tick has a message that is published in any case."""
-    t_ns, sample = own.clock[0] * PLANT_STEP_NS, own.observed[0]
-    return bool(own.applied[0].kinds or own.sent[0].kinds or is_status_due(
-        sample.state_since, sample.age, sample.is_stale, t_ns,
-        t_ns - own.clock[1] * PLANT_STEP_NS))
+    """
+    Return whether a tick has a message that is published in any case, and must be now.
+
+    A command that took effect is kept meanwhile, where it came without a link.
+    """
+    loop, sample = own.loop[0], own.observed[0]
+    t_ns = own.clock[0] * PLANT_STEP_NS
+    if is_status_due(sample.state_since, sample.age, sample.is_stale, t_ns,
+                     t_ns - own.clock[1] * PLANT_STEP_NS):
+        return True
+    if not (own.applied[0].kinds or own.sent[0].kinds):
+        return False
+    if not loop.keeps or loop.kept == len(own.kept):
+        return True
+    own.kept[loop.kept] = own.applied[0]
+    own.kept_at[loop.kept] = own.clock[0]
+    loop.kept += 1
+    return False
 
 
 @kernel
 def answer_ticks(own):
     """Receive steps, advance and answer; return how it `Ended`. ``own`` is an `Answering`."""
     loop = own.loop[0]
-    loop.done = 0
+    loop.done = loop.kept = 0
     while loop.done < loop.most:
         if loop.received == 0:
             found = receive(own.system, loop.socket, loop.step, WORD * len(own.step), 0)
@@ -181,109 +186,3 @@ def answer_ticks(own):
         if has_news(own):
             return Ended.ANSWERED.value
     return Ended.ANSWERED.value
-
-
-class AnswerLoop:
-    """
-    The loop of one actuator with the memory of its tick; steps have at most ``largest`` bytes.
-
-    ``advance`` is the tick, bound to ``ticked``.
-    """
-
-    def __init__(self, ticked: Ticked, advance: Bound, largest: int) -> None:
-        self._ticked, self._advance = ticked, advance
-        memory = ticked.memory
-        step = np.zeros(largest // WORD, np.uint32)
-        longest = len(self._answer(0, 0, is_sent=True, has_feed=True))
-        own = Answering(
-            np.zeros(1, LOOP), system_calls(), step, step.view(np.float64),
-            np.zeros(_STEP_HEAD, np.uint32), np.zeros((2, longest // WORD), np.uint32),
-            _words(ticked.ports), _words(ticked.commands), _words(memory.feeds),
-            _words(memory.replies), _words(memory.observed), _words(memory.applied),
-            _words(memory.sent), _words(memory.fed),
-            ticked.commands, memory.observed, memory.applied, memory.sent, ticked.clock)
-        self._own, self._loop = own, row_record(own.loop)
-        self._loop.step, self._loop.answers = step.ctypes.data, own.answers.ctypes.data
-        self._loop.advance, self._loop.table = advance.address, advance.table.ctypes.data
-        self._values = own.loop.view(np.int64).data    # faster than a record's fields
-        self._bound = Bound(answer_ticks, own)
-        self._form: object = None   # of the steps that are expected
-
-    def _answer(self, run_id: int, index: int, is_sent: bool, has_feed: bool) -> bytes:
-        """Return an answer to tick 0."""
-        memory = self._ticked.memory
-        return encode_answer(AnswerKind.DONE, run_id, 0, index, actuator_parts(
-            memory.replies, memory.observed, memory.applied, {},
-            np.ones(1, COMMAND) if is_sent else None, memory.fed if has_feed else None))
-
-    def expect(self, step: Step, index: int, has_feed: bool) -> None:
-        """
-        Take steps like this one, a tick that was checked and executed.
-
-        ``index`` is that of the participant; ``has_feed``: the supplies of the run have ports.
-        """
-        own, loop, rows = self._own, self._loop, step.rows
-        form = step.run_id, len(step.body), rows, index, has_feed
-        loop.expected = steps.HEADER_BYTES + len(step.body)
-        if form == self._form:
-            return
-        self._form = form
-        own.head[:] = words_of(step.header())
-        loop.port = _STEP_HEAD + index * _PORT
-        loop.command = _STEP_HEAD + rows * _PORT + index * _COMMAND
-        loop.feed = _STEP_HEAD + rows * (_PORT + _COMMAND) + index * _FEED if has_feed else 0
-        loop.rows = _ANSWER_HEAD + (PARTS + has_feed)
-        for is_sent in (False, True):
-            answer = words_of(self._answer(step.run_id, index, is_sent, has_feed))
-            own.answers[int(is_sent), :len(answer)] = answer
-            loop.sizes[int(is_sent)] = answer.nbytes
-
-    def forget(self) -> None:
-        """Take no steps until the next `expect`."""
-        self._values[_EXPECTED] = 0
-
-    @property
-    def is_expecting(self) -> bool:
-        """Return whether the loop takes steps."""
-        return self._values[_EXPECTED] > 0
-
-    def run(self, socket: int, tick: int, until_ns: int, most: int) -> Ended:
-        """
-        Answer at most so many ticks from ``tick`` on; a step that was `Ended.DUE` is the first.
-
-        A step is due from ``until_ns`` on, on the host's monotonic clock.
-        """
-        values = self._values
-        values[_SOCKET], values[_TICK] = socket, tick
-        values[_UNTIL], values[_MOST] = until_ns, most
-        return _ENDED[self._bound.run()]
-
-    def leave(self) -> Ended:
-        """Run no tick, and leave the step that was `Ended.DUE`."""
-        self._values[_DONE] = 0
-        return Ended.OTHER
-
-    @property
-    def done(self) -> int:
-        """Return the number of ticks of the last `run`."""
-        return self._values[_DONE]
-
-    @property
-    def broken(self) -> int:
-        """Return what the last tick returned."""
-        return self._values[_BROKEN]
-
-    @property
-    def has_step(self) -> bool:
-        """Return whether a message was received and not handled."""
-        return self._values[_RECEIVED] > 0
-
-    def take_step(self) -> bytes:
-        """Return the message that was received and not handled; it is no longer the loop's."""
-        size, self._values[_RECEIVED] = self._values[_RECEIVED], 0
-        return self._own.step.view(np.uint8)[:size].tobytes()
-
-
-def _words(rows: Records) -> np.ndarray:
-    """Return the memory of rows as words."""
-    return rows.view(np.uint32)

@@ -15,17 +15,15 @@ from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, LOAD_REPLY, Records, SAMPLE, SUPPLY_REPLY, WAS_REFUSED)
 from isa_ros.core.system_calls import (
     AT_ONCE, copy_memory, receive, send, system_calls, SystemCalls)
-from isa_ros.run.wire import answers, steps
+from isa_ros.run.wire import steps
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts, is_valid_command, PARTS
 from isa_ros.run.wire.steps import encode_tick, parts_of_tick
 from isa_ros.run.wire.words import (
-    are_finite, begins_with, copy_words, WORD, words_of, write_tick)
+    ANSWER_HEAD, are_finite, begins_with, copy_words, STEP_HEAD, WORD, words_of, write_tick)
 from isa_ros.tick.exchange import Rows
 import numpy as np
 
-_STEP_HEAD = steps.HEADER_BYTES // WORD
-_ANSWER_HEAD = answers.HEADER_BYTES // WORD
 _COMMAND = COMMAND.itemsize // WORD
 _APPLIED_KINDS = EVERY_KIND | WAS_REFUSED
 _APART = 1024   # bytes between two messages, so that they do not share lines of a cache
@@ -78,7 +76,7 @@ class Round(NamedTuple):
 def send_step(own):
     """Send the step of the tick to all; return 1 + the place of a socket that failed, or 0."""
     this = own.this[0]
-    write_tick(this.tick, own.step, _STEP_HEAD)
+    write_tick(this.tick, own.step, STEP_HEAD)
     for k in range(len(own.sources)):
         copy_memory(own.system, own.sources[k, 0], own.sources[k, 1], own.sources[k, 2])
     for k in range(len(own.sockets)):
@@ -101,7 +99,7 @@ def is_answer(k, own):
     message = own.answers[k, this.first:]
     is_sent = -1
     for form in range(2):
-        write_tick(this.tick, own.heads[k, form], _ANSWER_HEAD)
+        write_tick(this.tick, own.heads[k, form], ANSWER_HEAD)
         if own.received[k] == this.sizes[form] and begins_with(own.heads[k, form], message):
             is_sent = form
     if is_sent < 0:
@@ -183,7 +181,7 @@ class TickRound:
         step = words_of(encode_tick(run_id, 0, rows, has_controllers))
         forms = [[words_of(_answer(run_id, k, is_sent, has_feed)) for is_sent in (False, True)]
                  for k in range(n)]
-        at = _ANSWER_HEAD + PARTS + has_feed
+        at = ANSWER_HEAD + PARTS + has_feed
         received = np.zeros((n, (largest + _APART) // 8 * 2), np.uint32)
         checked = np.zeros(1, COMMAND)
         own = self._own = Round(

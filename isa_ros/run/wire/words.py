@@ -7,9 +7,12 @@ Their headers end with the tick; all records have a multiple of 8 bytes.
 import math
 
 from isa_ros.core.kernel import kernel
+from isa_ros.run.wire import answers, steps
 import numpy as np
 
 WORD = 4
+STEP_HEAD, ANSWER_HEAD = steps.HEADER_BYTES // WORD, answers.HEADER_BYTES // WORD
+"""Words of the headers."""
 TICK_WORDS = 2
 _LOW, _HIGH = 0xFFFFFFFF, 32
 

@@ -7,7 +7,8 @@ from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.nodes.lockstep import steady_ticks as module
 from isa_ros.nodes.lockstep.sockets import LARGEST
 from isa_ros.nodes.lockstep.steady_ticks import MOST, SteadyTicks
-from isa_ros.run.wire.answering import _DONE, Ended
+from isa_ros.run.wire.answer_loop import _DONE
+from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.answers import decode_answer
 from isa_ros.run.wire.steps import decode_step
 import numpy as np
@@ -131,7 +132,7 @@ def test_a_change_before_a_step_that_waits_leaves_it_alone(bench, node, ticks, m
     ticks._due_ns = 0
     ticks._is_due = True    # as after ticks that took their time
     send(bench, 6)
-    assert ticks._loop.run(node.number, 6, 0, 1) is Ended.DUE
+    assert ticks._loop.run(node.number, 6, 0, 1, True) is Ended.DUE
     ticks._loop._values[_DONE] = 4
     node.on_serve = lambda: bench.actuator.tune({'force.kp': 9e-8})
     assert ticks.run(node, 6) is Ended.OTHER and ticks.done == 0
