@@ -115,8 +115,9 @@ def evidence_of(
         valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
 
 
-def supervision_of(plant: np.record, reu: Reu, has_spool_sensor: bool) -> np.record:
-    """Return the `SUPERVISION` record of a `PLANT` record and its REU."""
+def supervision_of(
+        plant: np.record, reu: Reu, has_spool_sensor: bool, is_motor: bool) -> np.record:
+    """Return the `SUPERVISION` record of a `PLANT` record, of a motor or not, and its REU."""
     oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
     (area_a, area_b), ends = forcing_areas(plant), own_ends(plant)
     period = loop_steps(reu)['current'] * PLANT_STEP
@@ -125,6 +126,8 @@ def supervision_of(plant: np.record, reu: Reu, has_spool_sensor: bool) -> np.rec
         SUPERVISION, area_a=area_a, area_b=area_b, stroke=oil.stroke,
         end_a=ends[0], end_b=ends[1],
         flow_gain=flow_curve(valve.x_max, valve) * valve.per_root_drop,
+        coulomb=plant.friction.coulomb if is_motor else 0.0,
+        viscous=plant.friction.sigma2 if is_motor else 0.0,
         force_range=sensors.force_range, pressure_range=sensors.pressure_range,
         current_range=sensors.current_range,
         spool_range=sensors.spool_range if has_spool_sensor else 0.0,

@@ -263,7 +263,8 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),
-        supervision_of(known[0], sheet.reu, sheet.spool_feedback == 'electric'),
+        supervision_of(
+            known[0], sheet.reu, sheet.spool_feedback == 'electric', sheet.is_endless),
         loop_steps(sheet.reu)['current'], sheet.link.watchdog_ms * MILLI,
         sheet.reu.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)

@@ -25,6 +25,7 @@ FILLING = 0.1   # s, until leakage at null has filled at least one of them from 
 SUPERVISION = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'),     # m2 | m3/rad
     ('flow_gain', 'f8'),                    # of a land at full opening, m3/s/sqrt(Pa)
+    ('coulomb', 'f8'), ('viscous', 'f8'),   # of a motor's losses, Nm, Nms/rad; 0: a cylinder
     ('end_a', 'f8'), ('end_b', 'f8'),       # the cushions' lengths, m
     ('stroke', 'f8'), ('force_range', 'f8'), ('pressure_range', 'f8'), ('current_range', 'f8'),
     ('spool_range', 'f8'),                  # of its sensor, m; 0: there is none
@@ -79,12 +80,18 @@ def force_target(reference, velocity, supply_pressure, own):
     Return the reference of the force block, as far as the valve can reach it  (R17), N or Nm.
 
     At full opening, with the drops (A v / K)^2 at both lands and none in the lines,
-    F <= A_A P_S - (A_A^3 + A_B^3) v^2 / K^2 where it extends, likewise where it retracts.
+    F <= A_A P_S - (A_A^3 + A_B^3) v^2 / K^2 where it extends, likewise where it retracts. The
+    friction of a motor, not as small as that of seals, takes its part as it drives and at rest.
     """
     a, b = own.area_a, own.area_b
     lost = (a * a * a + b * b * b) * (velocity / own.flow_gain) * (velocity / own.flow_gain)
+    rubbed = own.coulomb + own.viscous * abs(velocity)
     highest = a * supply_pressure - (lost if velocity > 0.0 else 0.0)
     lowest = -b * supply_pressure + (lost if velocity < 0.0 else 0.0)
+    if velocity >= 0.0:
+        highest -= rubbed
+    if velocity <= 0.0:
+        lowest += rubbed
     return max(lowest, min(highest, reference))
 
 

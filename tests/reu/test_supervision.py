@@ -80,6 +80,19 @@ def test_the_force_is_compared_with_what_the_valve_can_reach():
     assert own.force_target(123.0, v, SUPPLY, CONSTANTS) == 123.0
 
 
+def test_a_motor_cannot_give_what_its_friction_takes():
+    """C + D v less where it drives, C on both sides at rest, all where it brakes (R17)."""
+    motor = CONSTANTS.copy().view(np.recarray)
+    motor.coulomb, motor.viscous = 40.0, 6.0
+    for v, above, below in ((0.0, 40.0, 40.0), (0.5, 43.0, 0.0), (-0.5, 0.0, 43.0)):
+        for asked, less in ((1e5, -above), (-1e5, below)):
+            without = own.force_target(asked, v, SUPPLY, CONSTANTS)
+            # a difference of some 8e3 N, rounded to 1e-12
+            assert own.force_target(asked, v, SUPPLY, motor) - without == pytest.approx(
+                less, abs=1e-9)
+    assert own.force_target(123.0, 0.5, SUPPLY, motor) == 123.0
+
+
 @pytest.mark.parametrize(('velocity', 'distance'), [
     (0.0, 0.03), (0.01, 0.03), (0.1, 0.0), (-0.1, 0.03)])
 def test_on_its_way_to_the_reference_a_position_has_no_error(velocity, distance):

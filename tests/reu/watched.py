@@ -55,7 +55,7 @@ class Watched:
                 stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
         supervision = record(
             SUPERVISION, area_a=AREA_A, area_b=AREA_B, flow_gain=FLOW_GAIN, stroke=STROKE,
-            end_a=0.0, end_b=0.0, has_two=1,
+            coulomb=0.0, viscous=0.0, end_a=0.0, end_b=0.0, has_two=1,
             force_range=RATINGS.force_range, pressure_range=RATINGS.pressure_range,
             current_range=RATINGS.current_range, spool_range=3e-4, spool_gain=SPOOL_GAIN,
             opening=4e-5, follows_force=1, creep=0.02, slow_share=PERIOD / (6.4e-3 + PERIOD),
