@@ -118,18 +118,19 @@ def add_powers(weight, y, k):
 
 @part_of_kernel
 def stages(h, tau, drive, port, feed, actuator, of_volumes, continuous, rates, y, k):
-    """Write the four rates of a classical Runge-Kutta step of ``h`` seconds."""
-    write_rates(tau, continuous[0], drive, port, feed, actuator, of_volumes, rates[0], True)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    half = tau + 0.5 * h
-    write_rates(half, continuous[1], drive, port, feed, actuator, of_volumes, rates[1], False)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    write_rates(half, continuous[1], drive, port, feed, actuator, of_volumes, rates[2], False)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + h * k[2, j]
-    write_rates(tau + h, continuous[1], drive, port, feed, actuator, of_volumes, rates[3], False)
+    """
+    Write the four rates of a classical Runge-Kutta step of ``h`` seconds.
+
+    One loop, so that the compiler has the plant's equations once and not four times.
+    """
+    share = 0.0     # of the step, at which a stage is
+    for stage in range(STAGES):
+        write_rates(tau + share * h, continuous[min(stage, 1)], drive, port, feed, actuator,
+                    of_volumes, rates[stage], stage == 0)
+        share = 0.5 if stage < 2 else 1.0
+        if stage < STAGES - 1:
+            for j in range(TOTALS_AT):
+                y[1, j] = y[0, j] + share * h * k[stage, j]
 
 
 @kernel

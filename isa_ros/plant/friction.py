@@ -71,7 +71,8 @@ def bristle_rate(v, z, friction):
     """
     pull = friction.sigma0 * abs(v) / stribeck(v, friction)
     rate = v - pull * z
-    return rate if pull <= FASTEST_RATE else rate * (FASTEST_RATE / pull)
+    # the division by itself: else it is done in every step, and the next stage waits for it
+    return rate * (1.0 if pull <= FASTEST_RATE else FASTEST_RATE / pull)
 
 
 @kernel
