@@ -8,9 +8,10 @@ from isa_ros.bench import page
 from isa_ros.bench.groups import BenchGroup, groups
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section
+from isa_ros.bench.parts import misfits
 from isa_ros.bench.rounds import Outcomes, outcomes
 from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, RunError
 from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import refuse_a_part, write_wanted_page
 from isa_ros.text.progress import counted, Progress
@@ -48,7 +49,8 @@ def bench(
         A group does not exist or cannot be measured here, or only a part of an existing page
         was measured.
     RunError
-        A run could not be completed.
+        A run could not be completed, or parts of a row do not add up to it; then no page is
+        written.
 
     """
     measured = chosen(only)
@@ -56,9 +58,16 @@ def bench(
         refuse_a_part(out / PAGE, only)
     here = machine()
     print(f'{here.summary}\n{HEAD}')
+    if only is None:
+        for group in groups():
+            if reason := group.missing():
+                print(f'{group.name}: not measured, {reason}')
     report = measured_report(measured, here, counted(sys.stderr, 'runs'))
     if json_file is not None:
         write_tree(page.as_tree(report), json_file)
+    wrong = misfits(row for section in report.sections for row in section.rows)
+    if wrong:
+        raise RunError('; '.join(wrong))
     write_wanted_page(page, report, out)
     return report
 

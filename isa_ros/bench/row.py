@@ -41,6 +41,8 @@ class Row:
     note: str = ''
     part_of: str = ''
     """Name of the row that this one is a part of."""
+    most_share: float | None = None
+    """Largest ratio, of either sign, with which the other parts of the same row are accepted."""
 
     @classmethod
     def of(cls, name: str, values: Sequence[float], unit: str) -> 'Row':

@@ -1,47 +1,50 @@
-"""Parts of a tick of the leg, without ROS."""
+"""Parts of a tick of the leg in one process, recorded, without ROS, in time of the processor."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from itertools import count, islice
 from pathlib import Path
 import tempfile
 
+from isa_ros.bag.packed import Packed
 from isa_ros.bag.writer import BagWriter
-from isa_ros.bench.rigs import request_of
-from isa_ros.bench.row import Row, seconds
-from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
-from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.bench.parts import divided, in_turn, Work
+from isa_ros.bench.recording import recording
+from isa_ros.bench.row import Row
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.run.output import packer_of
+from isa_ros.run.packing import Packer
 from isa_ros.run.provenance import provenance_of
-from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario
 from isa_ros.simulation import Simulation
-import numpy as np
 
+BEGUN = 1000    # ticks, after which the leg stands
 TICKS = 500
-PLANT, MESSAGES = 'three actuators: plant + REU', 'messages of actuators, leg and supply'
-_DROP = Spec(LEG, ONE_PROCESS, TICKS)
+SHARE = 0.25
+"""Of a tick, that its parts may leave: the loop itself, and caches that others have used."""
+ACTUATORS = 'actuators'
 
 
 def tick_parts() -> list[Row]:
-    """Measure the parts of the leg's tick, without ROS; the ratio is to the whole tick."""
+    """Measure a whole tick and its parts, which do the same work one by one."""
     drop = leg_drop()
-    parts = actuator_parts()
-    surroundings = surroundings_of(drop.run)
-    ports = np.zeros(len(drop.run.actuators), LOAD_PORT)
-    replies = group_of(drop.run).replies
-    replies['mean_forces'] = surroundings.starts()['force'][:, None]
+    whole, alone = Simulation(drop), Simulation(drop)
+    packer = packer_of(drop.run, alone.loop.rows.published)
+    with recording(whole), _recorder(drop, packer) as record:
+        _stepped(whole, BEGUN)
+        _stepped(alone, BEGUN)
+        times = in_turn({
+            'whole': Work(lambda: _stepped(whole, TICKS)), **works_of(alone),
+            'messages': Work(packing(packer, drop.run.step_ns)), 'recorder': Work(record)}, TICKS)
+    row = Row('a tick of the leg', 1e6 * times.pop('whole'), 'us')
+    return [row, *divided(row, times, SHARE)]
 
-    def leg() -> None:
-        for _ in range(TICKS):
-            surroundings.ports(ports)
-            surroundings.advance(replies)
-    parts['leg and supply'] = seconds(leg, TICKS)
-    parts['recorder'] = _recorder_seconds(drop)
-    whole = sum(parts.values())
-    return [Row(f'tick of the leg: {name}', value * 1e6, 'us', 'sum of the parts', value / whole)
-            for name, value in parts.items()]
+
+def _stepped(simulation: Simulation, n_ticks: int) -> None:
+    for _ in range(n_ticks):
+        simulation.step()
 
 
 def leg_drop() -> Scenario:
@@ -49,37 +52,63 @@ def leg_drop() -> Scenario:
     return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG)))
 
 
-def actuator_parts() -> dict[str, float]:
-    """Return the time of the leg's actuators and messages for a tick, in s."""
-    simulation = Simulation(leg_drop())
-    ports = np.zeros(len(simulation.names), LOAD_PORT)
-    simulation.surroundings.ports(ports)
-    packer = packer_of(simulation.scenario.run, simulation.loop.rows.published)
+def works_of(simulation: Simulation) -> dict[str, Work]:
+    """Return what a tick calls of actuators and surroundings, over the next `TICKS` ticks."""
+    group, surroundings, rows = simulation.group, simulation.surroundings, simulation.loop.rows
+    of_group, of_surroundings = group.snapshot(), surroundings.snapshot()
+    given = [(rows.ports.copy(), rows.commands.copy(), rows.replies.copy())
+             for _ in range(TICKS) if simulation.step()]
 
-    def plants() -> None:
+    def fill() -> None:
         for _ in range(TICKS):
-            simulation.group.advance(ports)
+            surroundings.ports(rows.ports)
 
-    def messages() -> None:
-        for tick in range(TICKS):
-            packer.pack(tick, tick, {})
+    def advance_actuators() -> None:
+        for port, commands, _ in given:
+            group.advance(port, commands)
+
+    def advance_surroundings() -> None:
+        for _, _, replies in given:
+            rows.replies[:] = replies   # kernels are bound to these rows
+            surroundings.advance(rows.replies)
+    return {'ports': Work(fill),
+            ACTUATORS: Work(advance_actuators, lambda: group.restore(of_group)),
+            'body and supply': Work(
+                advance_surroundings, lambda: surroundings.restore(of_surroundings))}
+
+
+def actuators_alone() -> float:
+    """Return the time of the leg's actuators for a tick, in s."""
+    simulation = Simulation(leg_drop())
+    _stepped(simulation, BEGUN)
+    return in_turn({ACTUATORS: works_of(simulation)[ACTUATORS]}, TICKS)[ACTUATORS]
+
+
+def packing(packer: Packer, step_ns: int) -> Callable[[], None]:
+    """
+    Return what packs the messages of `TICKS` ticks, those of each second once a second.
+
+    Ticks follow those before: at t = 0 all messages of each second are there.
+    """
+    ticks = count(2)
+
+    def pack() -> None:
+        for tick in islice(ticks, TICKS):
+            packer.pack(tick * step_ns, (tick - 1) * step_ns, {})
             packer.all_messages()
-    return {PLANT: seconds(plants, TICKS), MESSAGES: seconds(messages, TICKS)}
+    return pack
 
 
-def _recorder_seconds(drop: Scenario) -> float:
-    """Return the time to record one tick's messages, in s."""
-    simulation = Simulation(drop)
-    rows = simulation.loop.rows.published
-    simulation.step()
-    packer = packer_of(drop.run, rows)
-    packer.pack(0, 0, {})
-    messages = packer.all_messages()
-    with tempfile.TemporaryDirectory() as directory:
-        session = prepare(request_of(_DROP, Path(directory)))
-        ticks = count()
-        with BagWriter(session.out, packer.topics, provenance_of(session.scenario)) as bag:
-            def work() -> None:
-                for tick in islice(ticks, TICKS):
-                    bag.write_tick(tick * session.run.step_ns, tick, messages)
-            return seconds(work, TICKS)
+@contextmanager
+def _recorder(drop: Scenario, packer: Packer) -> Iterator[Callable[[], None]]:
+    """Yield what records the messages of `TICKS` ticks."""
+    step_ns, ticks = drop.run.step_ns, count()
+    packer.pack(NS_PER_SECOND // 2, NS_PER_SECOND // 2 - step_ns, {})
+    packed = packer.all_messages()
+    messages = Packed(packed.block.copy(), packed.layout)
+    with tempfile.TemporaryDirectory(prefix='isa_bench_') as folder, BagWriter(
+            Path(folder) / 'bag', packer.topics, provenance_of(drop)) as bag:
+        def record() -> None:
+            for tick in islice(ticks, TICKS):
+                bag.write_tick(tick * step_ns, tick, messages)
+        yield record

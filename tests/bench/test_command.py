@@ -5,6 +5,7 @@ import sys
 from isa_ros.bench import command, groups, rounds
 from isa_ros.bench.command import chosen
 from isa_ros.bench.groups import alone, BenchGroup, GROUPS
+from isa_ros.bench.parts import divided
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.cli.main import main
@@ -57,6 +58,19 @@ def test_rows_are_printed_and_written(monkeypatch, tmp_path, capsys):
     printed = capsys.readouterr().out
     assert 'A group (own)' in printed and 'a row' in printed and str(tmp_path) in printed
     assert (tmp_path / 'bench.md').exists() and (tmp_path / 'b.json').exists()
+
+
+def test_parts_that_do_not_add_up_are_printed_and_refused(monkeypatch, tmp_path, capsys):
+    """The JSON has them; a page is not written."""
+    rows = divided(Row('a tick', 100.0, 'us'), {'kernels': 30e-6}, 0.2)
+    group = BenchGroup('own', 'A group', lambda _: rows)
+    monkeypatch.setattr(command, 'chosen', lambda only: (group,))
+    assert main(['bench', '--json', str(tmp_path / 'b.json'), '--out', str(tmp_path)]) == 3
+    ended = capsys.readouterr()
+    assert 'of it not covered' in ended.out
+    assert ended.err.endswith('a tick: of it not covered 70 us, +70% of a tick, '
+                              'must be within 20%\n')
+    assert (tmp_path / 'b.json').exists() and not (tmp_path / 'bench.md').exists()
 
 
 @pytest.mark.parametrize('option', ['--json', '--out'])

@@ -24,7 +24,7 @@ def loading(monkeypatch):
 def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     """Half of 1000 us in each phase; 1500 us of processor time is 3/4 of two cores."""
     monkeypatch.setattr(leg, 'pipe_exchange', lambda: 100e-6)
-    monkeypatch.setattr(leg, 'actuator_parts', lambda: {'plant': 60e-6, 'messages': 10e-6})
+    monkeypatch.setattr(leg, 'actuators_alone', lambda: 70e-6)
     monkeypatch.setattr('isa_ros.bench.leg.cores', lambda: 2)
     outcomes = Outcomes({leg.IN_PROCESSES: [ran(1000.0, 3)], leg.IN_ONE_PROCESS: [ran(5000.0)]})
     rows = leg.leg_rows(outcomes)
