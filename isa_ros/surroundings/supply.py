@@ -193,7 +193,8 @@ class Supply:
             else:
                 self._refuse_small(
                     'capacitance', capacitance(sheet.pressure_mpa * MPA, supply[0]),
-                    'gas_volume_l, or let the pressure move (port: {kind: moving})')
+                    f'{"line_volume_l" if sheet.accumulator_lost else "gas_volume_l"}, or let '
+                    'the pressure move (port: {kind: moving})')
         else:
             ideal = self._ideal(sheet)
         if isinstance(sheet.return_line, VolumeReturn):

@@ -133,8 +133,14 @@ def test_a_return_line_that_cannot_be_integrated_is_refused(line, message):
 
 def test_a_supply_too_small_for_the_tick_is_refused_with_both_numbers():
     """coupling.md: C over the valves' slope must last ten ticks."""
-    with pytest.raises(ParameterError, match=r'must be >= 10 ms'):
+    with pytest.raises(ParameterError, match=r'must be >= 10 ms .*; enlarge gas_volume_l'):
         supply.Supply(SHEET, MS, flow_slope=1e-8)
+
+
+def test_without_its_gas_only_the_line_can_be_enlarged():
+    lost = replace(SHEET, accumulator_lost=1.0)
+    with pytest.raises(ParameterError, match='; enlarge line_volume_l, or let the pressure move'):
+        supply.Supply(lost, MS, flow_slope=1e-8)
 
 
 def test_compiled_rates_equal_their_python_source():
