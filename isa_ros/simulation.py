@@ -88,7 +88,8 @@ class Simulation:
         self.loop = TickLoop(
             run.step_ns, transport, self.surroundings,
             Rows(len(self.names), self.surroundings, self.group),
-            ScheduledSource(scenario.commands, scenario.changes),
+            ScheduledSource(scenario.commands, scenario.changes,
+                            next_command=scenario.next_command),
             stops=emergency_stops_of(run, self.surroundings),
             request_range=request_range_of(run) if controllers else None, warn=_warn)
         """The ticks of the run; its sinks take the rows of each instant."""

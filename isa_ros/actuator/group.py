@@ -61,7 +61,8 @@ class ActuatorGroup:
         self._values = [actuator.tuning.values for actuator in self.actuators]
         self.ticked = ticked(self._memory, self._steps)
         """Memory of their tick."""
-        self._tick = bound_tick(self.ticked)
+        self.tick = bound_tick(self.ticked)
+        """Their tick, between `set_clock` and `pass_ticks`; it returns what `refuse` takes."""
 
     @property
     def t_ns(self) -> int:
@@ -149,8 +150,10 @@ class ActuatorGroup:
             own.commands['kinds'] = 0
         elif commands is not own.commands:
             own.commands[:] = commands
-        own.clock[0] = self.t_ns // PLANT_STEP_NS
-        self._end(1, self._tick.run() - 1)
+        self.set_clock()
+        found = self.tick.run()
+        self.pass_ticks(1)
+        self.refuse(found)
         return self._memory.replies
 
     def advance_many(
@@ -169,12 +172,12 @@ class ActuatorGroup:
         while True:
             if n_ticks:
                 self._latch()
-            is_settled = all(values.is_settled for values in self._values)
-            after = n_ticks if is_settled else min(first + 1, n_ticks)
+            after = n_ticks if self.is_settled else min(first + 1, n_ticks)
             done, broken = kernels.actuator_ticks(
                 self.t_ns // PLANT_STEP_NS, self._steps, ports, commands[first:after],
                 self._memory, samples[first:after + 1], states[first:after + 1])
-            self._end(done, broken)
+            self.pass_ticks(done)
+            self.refuse(broken + 1)
             first = after
             if first >= n_ticks:
                 return TickLog(samples, states)
@@ -185,14 +188,26 @@ class ActuatorGroup:
             if not values.is_settled:
                 actuator.latch_tuning()
 
-    def _end(self, n_ticks: int, broken: int) -> None:
-        """Move the time on by as many ticks; refuse a state that is no longer finite."""
+    def set_clock(self) -> None:
+        """Let the next `tick` begin at the time that is reached."""
+        self.ticked.clock[0] = self.t_ns // PLANT_STEP_NS
+
+    def pass_ticks(self, n_ticks: int) -> None:
+        """Move the time of the actuators on by the ticks that `tick` has run."""
         passed_ns = n_ticks * self._timing.step_ns
         for actuator in self.actuators:
             actuator.t_ns += passed_ns
-        if broken >= 0:
-            row, state = divmod(broken, STATE_SIZE)
+
+    def refuse(self, found: int) -> None:
+        """Raise `SimulationDiverged` for what `tick` has found; 0: nothing."""
+        if found:
+            row, state = divmod(found - 1, STATE_SIZE)
             self.actuators[row].raise_diverged(state)
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no value changed at the last tick, or changes at the next."""
+        return all(values.is_settled for values in self._values)
 
     def snapshot(self) -> bytes:
         """Return the complete state of all; `restore` continues from it byte for byte."""

@@ -120,6 +120,10 @@ class Part(NamedTuple):
     found: Callable[[int], object]
 
 
+def nothing(found: int) -> None:
+    """Do nothing: such a kernel finds nothing, or what it finds needs no answer."""
+
+
 class Rebound:
     """
     A kernel over a memory of which some arrays are given at each call.

@@ -5,6 +5,9 @@ A number is the place of a name in its list; `SAMPLE` and `COMMAND` hold numbers
 in `isa_ros.reu.device`.
 """
 
+from isa_ros.core.kernel import kernel_function
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
+
 STATES = ('initialising', 'disabled', 'enabled', 'quick stop', 'fault reaction', 'fault')
 INITIALISING, DISABLED, ENABLED, QUICK_STOP, FAULT_REACTION, FAULT = range(6)
 
@@ -25,6 +28,23 @@ FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 's
           'unused_setpoints', 'refused_requests', 'age', 'is_stale', 'frames_lost_down',
           'frames_lost_up', 'commands_dropped')
 """Fields of a `SAMPLE` that describe the device."""
+
+
+_HALF_STEP_NS = 0.5 * PLANT_STEP_NS
+
+
+@kernel_function
+def is_status_due(
+        since: float, age: float, is_stale: float, t_ns: int, tick_start_ns: int) -> bool:
+    """
+    Return whether a tick that ends at ``t_ns`` has a message of a device, by its `SAMPLE`.
+
+    It is one in which the status has changed, as far as it has arrived over a link, or a second
+    of simulated time ended; t = 0. ``since`` and ``age`` are ``state_since`` and the age, s.
+    """
+    arrived = since + (0.0 if is_stale else age)
+    return (arrived * NS_PER_SECOND > tick_start_ns - _HALF_STEP_NS
+            or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
 
 def mode_name(number: float) -> str:

@@ -154,6 +154,10 @@ class RealTimeSource:
         self.end: Callable[[int, Records], Sequence[str]] = frames.end
         self.take_tuned = frames.take_tuned
 
+    def quiet_until(self, tick: int) -> float:
+        """Return the tick itself: frames may bring commands for any."""
+        return tick
+
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True once time has begun; before, serve the line for a moment."""
         if self._frames.has_begun:

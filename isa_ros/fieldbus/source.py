@@ -41,6 +41,10 @@ class FrameSource:
         self.has_begun = False
         """Whether simulated time has begun."""
 
+    def quiet_until(self, tick: int) -> float:
+        """Return the tick itself: frames may bring commands for any."""
+        return tick
+
     def is_due(self, tick: int, samples: Records) -> bool:
         """Serve the line for at most `SLICE_S`; return whether the cycle of the tick began."""
         self.show(tick, samples)

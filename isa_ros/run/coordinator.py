@@ -1,11 +1,12 @@
 """The loop of a run in host time: pace, pauses, requests and progress; no ROS."""
 
 from collections.abc import Callable
+import math
 
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
-from isa_ros.run.pacing import Pace, ProgressMeter
+from isa_ros.run.pacing import Pace, ProgressMeter, QuietStretch
 from isa_ros.tick.exchange import Rows
 from isa_ros.tick.tick_loop import TickLoop
 
@@ -42,6 +43,7 @@ class Coordinator:
         self._progress = progress
         self._should_stop = should_stop
         self._serve: Requests = _no_requests if requests is None else requests
+        self._quiet = QuietStretch()
         self.is_paused = is_paused
         self.is_reset = False
         """Whether the run ended by a reset, to start again at t = 0."""
@@ -141,7 +143,9 @@ class Coordinator:
                 break
             while not self._is_due():
                 pass
-            self._advance()
+            self._refuse_stop()
+            self._loop.advance()
+            self._progress.update(self.t_ns)
 
     def emergency_stop(self, is_open: bool) -> None:
         """Open or close the lines of all emergency stops; raises as `EmergencyStops.request`."""
@@ -179,7 +183,10 @@ class Coordinator:
         return is_due
 
     def _advance(self) -> None:
+        """Advance by one tick; without a pace before it by quiet ones, for a moment."""
         self._refuse_stop()
+        if self._pace.factor == 0.0:
+            self._quiet.advance(self._loop, math.inf if self._n_ticks is None else self._n_ticks)
         self._loop.advance()
         self._progress.update(self.t_ns)
 

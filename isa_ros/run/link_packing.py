@@ -6,10 +6,11 @@ plant step at which it took effect. ``~/sent_setpoint`` is what was handed to th
 """
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
-    HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
+    COMMAND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records, SAMPLE)
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP, PLANT_STEP_NS
 from msg_adapters.setpoint import applied_setpoint
 from msg_adapters.template import FIRST_VALUE, Prepared, stamped
@@ -17,6 +18,7 @@ import numpy as np
 
 _SENT = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
          'reference', 'kinds')
+_AGE = (SAMPLE.names or ()).index('age')
 WORDS = 2 + len(_SENT)
 """Words of one link: times of sampling and of effect, then the values of the sent setpoint."""
 
@@ -28,16 +30,17 @@ def time_word_of(t_ns):
 
 
 @kernel
-def pack_links(t_ns, tick_start_ns, start_ns, at, links, ages, applied, sent, words, values):
+def pack_links(
+        t_ns, tick_start_ns, start_ns, at, links, samples, applied, sent, words, values):
     """
     Write the words of all links from place ``at`` on.
 
-    ``links`` are the rows with a link, ``ages`` the age of every sample in s, ``applied`` and
+    ``links`` are the rows with a link, ``samples`` the floats of every `SAMPLE`, ``applied`` and
     ``sent`` `COMMAND` rows; ``start_ns`` is the time of stamps at t = 0.
     """
     for row in links:
         words[at] = time_word_of(
-            start_ns + t_ns - int(ages[row] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
+            start_ns + t_ns - int(samples[row, _AGE] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
         due = applied[row].due_step
         words[at + 1] = time_word_of(
             start_ns + (due * PLANT_STEP_NS if due > 0 else tick_start_ns))
@@ -62,24 +65,34 @@ def pack_links(t_ns, tick_start_ns, start_ns, at, links, ages, applied, sent, wo
         at += WORDS
 
 
+class Links(NamedTuple):
+    """Of the actuators with a link."""
+
+    rows: np.ndarray
+    """int64, (l,)."""
+    first: np.ndarray
+    """Place of their first word, int64, (1,)."""
+    sent: np.ndarray
+    """`COMMAND` handed to a link, (n,)."""
+
+
 class LinkWords:
     """
     The words of the links of some actuators, behind all other words of a template.
 
-    ``rows`` are the actuators with a link, ``first`` the first column of their words; the rest
-    are rows of all: their `SAMPLE`, and the `COMMAND` applied and sent.
+    ``rows`` are the actuators with a link, ``first`` the first column of their words; ``sent``
+    are the `COMMAND` handed to the links, (n,), None: there are none.
     """
 
-    def __init__(
-            self, rows: Sequence[int], first: int, samples: Records, applied: Records,
-            sent: Records | None) -> None:
-        self.sent_kinds = np.zeros(len(samples), np.uint32) if sent is None else sent['kinds']
-        """Kinds of the sent command of every actuator; 0: none."""
+    def __init__(self, rows: Sequence[int], first: int, sent: Records | None, n: int) -> None:
+        self.sent: Records = np.zeros(n, COMMAND) if sent is None else sent
+        """`COMMAND` handed to a link, kinds 0 without one, (n,)."""
         self.rows = () if sent is None else tuple(rows)
         self.n_words = len(self.rows) * WORDS
         self._first = first
-        self._numbers = np.array(self.rows, np.int64)
-        self._ages, self._applied, self._sent = samples['age'], applied, sent
+        self.memory = Links(
+            np.array(self.rows, np.int64), np.array([FIRST_VALUE + first], np.int64), self.sent)
+        """For the kernel."""
 
     def messages(
             self, row: int, name: str, messages: Mapping[str, Prepared]) -> dict[str, Prepared]:
@@ -91,11 +104,3 @@ class LinkWords:
         own = {suffix: stamped(message, first + (suffix == 'applied_setpoint'))
                for suffix, message in messages.items()}
         return own | {'sent_setpoint': applied_setpoint(name, sent)}
-
-    def pack(
-            self, t_ns: int, tick_start_ns: int, start_ns: int, words: np.ndarray,
-            values: np.ndarray) -> None:
-        """Write the words, stamped from ``start_ns`` on; ``values`` is the float view of them."""
-        if self.rows:
-            pack_links(t_ns, tick_start_ns, start_ns, FIRST_VALUE + self._first, self._numbers,
-                       self._ages, self._applied, self._sent, words, values)

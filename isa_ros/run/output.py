@@ -1,14 +1,19 @@
 """Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
+from isa_ros.bag.message_chunk import Room
+from isa_ros.bag.packed import Layout
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.bound import nothing, Part
 from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Messages, Names, Packer
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
+import numpy as np
+from numpy.typing import NDArray
 
 
 class Recorder(Protocol):
@@ -25,6 +30,19 @@ class Recorder(Protocol):
             The sample cannot be written, for example because the disk is full.
 
         """
+        ...
+
+
+@runtime_checkable
+class QuietRecorder(Recorder, Protocol):
+    """A recorder that gives room for the records of ticks of one layout."""
+
+    def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
+        """Return room for ticks from ``t_ns`` on; as `isa_ros.bag.writer.BagWriter`."""
+        ...
+
+    def close_stretch(self, n_ticks: int) -> None:
+        """Record the first ticks that were written since `open_stretch`, possibly none."""
         ...
 
 
@@ -86,6 +104,33 @@ class RunOutput(RowSink):
         """Publish the time of a tick, before all other messages of that instant."""
         if self._outlets.clock.has_subscribers():
             self._outlets.clock.publish((clock.pack(self._stamp(tick)),))
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return how many ticks after ``tick`` only have to be packed and recorded."""
+        of_all = self._outlets.clock, self._outlets.surroundings, *self._outlets.actuators
+        if any(outlet.has_subscribers() for outlet in of_all) or self._events:
+            return 0
+        if self._recorder is not None and not isinstance(self._recorder, QuietRecorder):
+            return 0
+        return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)
+
+    def begin_quiet(
+            self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
+        """Record what is packed; return what packs and records, as far as there is room."""
+        if not isinstance(self._recorder, QuietRecorder):
+            return most, ()
+        self.record()
+        layout = self._packer.quiet_layout(self._step_ns)
+        room = self._recorder.open_stretch(layout, self._stamp(tick + 1), self._step_ns)
+        recording = self._packer.recording(clock, layout, room)
+        return min(most, room.n_ticks), (Part(recording, nothing),)
+
+    def end_quiet(self, tick: int, n_ticks: int) -> None:
+        """Record what was written."""
+        if isinstance(self._recorder, QuietRecorder):
+            self._recorder.close_stretch(n_ticks)
+            if n_ticks:
+                self._recorded = tick + n_ticks
 
     def add_event(self, tick: int, text: str) -> None:
         """Publish and record an event before a tick: a pause, a step, a reset, an error."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 import time
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
@@ -10,6 +10,7 @@ from isa_ros.errors import ConfigError
 SLICE_S = 0.1  # longest sleep between two checks for a signal
 REPORT_PERIOD_S = 0.2
 LARGEST_LAG_S = 0.1     # at the end of a run; below this lag no warning is printed
+QUIET_S = 2e-3  # ticks without a look at what has arrived
 JOIN_TIMEOUT_S = 30.0  # longest wait for participants before tick 0
 
 STARTING, JOINING = 'starting', 'joining'
@@ -86,6 +87,38 @@ class Pace:
         due = self._start + t_ns * self._seconds_per_ns
         while (left := due - self._now()) > 0.0 and not should_stop():
             self._sleep(min(left, SLICE_S))
+
+
+class QuietTicks(Protocol):
+    """Ticks that are advanced in one call."""
+
+    @property
+    def ticks(self) -> int:
+        """Return the number of finished ticks."""
+        ...
+
+    def advance_quietly(self, until: int) -> None:
+        """Advance as far as nothing unusual happens, at most to tick ``until``."""
+        ...
+
+
+class QuietStretch:
+    """Advances quiet ticks, as many in a call as take `QUIET_S` of host time."""
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self._now, self._most = now, 1
+
+    def advance(self, loop: QuietTicks, n_ticks: float) -> None:
+        """Advance by some quiet ticks, to the one before the last of ``n_ticks`` at most."""
+        begin, first = self._now(), loop.ticks
+        loop.advance_quietly(int(min(first + self._most, n_ticks - 1)))
+        if loop.ticks - first < self._most:
+            return
+        spent = self._now() - begin
+        if spent < 0.5 * QUIET_S:
+            self._most *= 2
+        elif spent > QUIET_S:
+            self._most = max(1, self._most // 2)
 
 
 class Laps:

@@ -8,15 +8,17 @@ the numbers of all rows into it. Recorder and publishers receive parts of the bl
 from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
+from isa_ros.bag.message_chunk import Room
 from isa_ros.bag.packed import Layout, layout, Packed
-from isa_ros.core.constants import ATMOSPHERE
-from isa_ros.core.kernel import kernel
+from isa_ros.core.bound import Bound
 from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.body_messages import prepared, type_of
 from isa_ros.run.link_packing import LinkWords
+from isa_ros.run.pack_kernel import APPLIED, pack, Packing, PRESSURES, Target
+from isa_ros.run.quiet_recording import record, Recording
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
 from isa_ros.run.supply_messages import of_supply, SIGNALS
 from isa_ros.surroundings.messages import BodyMessage
@@ -26,18 +28,14 @@ from msg_adapters import actuator_messages, clock, coordinator_messages, diagnos
 from msg_adapters.actuator_messages import (
     CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
 from msg_adapters.sensor_messages import fluid_pressure, temperature
-from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
+from msg_adapters.template import FIRST_VALUE, Prepared, Template
 import numpy as np
+from numpy.typing import NDArray
 
 Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
-_SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
-_APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
-            'reference', 'kinds')
-_PRESSURES = ('pressure_a', 'pressure_b', 'cushion_pressure')
-_PRESSURE_A, _PRESSURE_B, _CUSHION = (_SAMPLE.index(name) for name in _PRESSURES)
-_GAS = _SUPPLY.index(SIGNALS[2])
+_SAMPLE = tuple(SAMPLE.names or ())
 
 
 class Names(NamedTuple):
@@ -65,50 +63,6 @@ def topics_of_actuator(
             for suffix, type_ in topics(is_heated, has_link, is_cushioned)]
 
 
-@kernel
-def pack(instant, tick_start, gauge_zero, samples, applied, supplies, body, words, values,
-         template):
-    """
-    Write the numbers of all rows into the block of a template.
-
-    ``samples`` (n, floats of a `SAMPLE`), ``supplies`` (m, floats of a `SUPPLY_SAMPLE`) and
-    ``body`` are plain floats, ``applied`` `COMMAND` rows; ``values`` is the float view of
-    ``words``; ``template`` has block, places and sources. Published pressures are absolute:
-    gauge plus ``gauge_zero``.
-    """
-    words[0], words[1] = instant, tick_start
-    at = FIRST_VALUE
-    for n in range(len(samples)):
-        for j in range(samples.shape[1]):
-            values[at] = samples[n, j]
-            at += 1
-        values[at] = samples[n, _PRESSURE_A] + gauge_zero
-        values[at + 1] = samples[n, _PRESSURE_B] + gauge_zero
-        values[at + 2] = samples[n, _CUSHION] + gauge_zero
-        command = applied[n]
-        values[at + 3], values[at + 4] = float(command.is_enabled), command.position
-        values[at + 5], values[at + 6] = command.velocity, command.effort
-        values[at + 7], values[at + 8] = command.stiffness, command.damping
-        values[at + 9], values[at + 10] = float(command.mode), command.reference
-        values[at + 11] = float(command.kinds)
-        at += 12
-    for m in range(len(supplies)):
-        values[at], values[at + 1] = supplies[m, 0] + gauge_zero, supplies[m, 1] + gauge_zero
-        values[at + 2] = supplies[m, _GAS]
-        at += 3
-    for j in range(len(body)):
-        values[at] = body[j]
-        at += 1
-    for k in range(len(template.places)):
-        template.block[template.places[k]] = words[template.sources[k]]
-
-
-class _Target(NamedTuple):
-    block: np.ndarray
-    places: np.ndarray
-    sources: np.ndarray
-
-
 class Packer:
     """
     Packs the messages of some rows.
@@ -127,11 +81,11 @@ class Packer:
         found: list[tuple[Topic, Prepared | None]] = []
         self._links = LinkWords(
             [row for row, (name, _) in enumerate(names.actuators) if name in names.linked],
-            _n_columns(rows), rows.samples, rows.applied, rows.sent)
+            _n_columns(rows), rows.sent, len(rows.samples))
         at = 0
         for row, (name, is_rotary) in enumerate(names.actuators):
             own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
-            at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+            at += len(_SAMPLE) + len(PRESSURES) + len(APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
                       for topic in topics_of_actuator(
                           f'/{name}', name in names.heated, row in self._links.rows,
@@ -173,28 +127,27 @@ class Packer:
     @staticmethod
     def _actuator(name: str, is_rotary: bool, first: int) -> dict[str, Prepared]:
         places = {field: first + k for k, field in enumerate(
-            (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
-             *(f'applied {field}' for field in _APPLIED)))}
-        absolute = {field: places[f'{field}, absolute'] for field in _PRESSURES}
+            (*_SAMPLE, *(f'{field}, absolute' for field in PRESSURES),
+             *(f'applied {field}' for field in APPLIED)))}
+        absolute = {field: places[f'{field}, absolute'] for field in PRESSURES}
         messages = actuator_messages.prepared(
             name, is_rotary, places, absolute,
-            {field: places[f'applied {field}'] for field in _APPLIED})
+            {field: places[f'applied {field}'] for field in APPLIED})
         return {**messages,
                 CUSHION_PRESSURE[0]: fluid_pressure(name, absolute['cushion_pressure']),
                 TEMPERATURE[0]: temperature(name, places['temperature'])}
 
     def _bind(self) -> None:
-        """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
+        """Bind the kernel to the rows as plain floats, and to the block."""
         rows, template = self._rows, self._template
-        self._samples, self._supplies = floats(rows.samples), floats(rows.supplies)
-        self._bodies = [floats(sample).reshape(-1) for sample in rows.bodies.values()]
-        self._of_bodies = self._bodies[0] if len(self._bodies) == 1 else np.concatenate(
-            [np.zeros(0), *self._bodies])
-        self._words = np.zeros(
-            FIRST_VALUE + _n_columns(rows) + self._links.n_words, np.uint64)
-        self._values = self._words.view(np.float64)
-        self._target = _Target(template.block, template.places, template.sources)
-        self._kinds, self._sent_kinds = rows.applied['kinds'], self._links.sent_kinds
+        words = np.zeros(FIRST_VALUE + _n_columns(rows) + self._links.n_words, np.uint64)
+        bodies = tuple(floats(sample).reshape(-1) for sample in rows.bodies.values())
+        self._packing = Packing(
+            np.zeros(3, np.int64), floats(rows.samples), rows.applied, floats(rows.supplies),
+            bodies or (np.zeros(0),), self._links.memory, words, words.view(np.float64),
+            Target(template.block, template.places, template.sources))
+        self._pack = Bound(pack, self._packing)
+        self._kinds, self._sent_kinds = rows.applied['kinds'], self._links.sent['kinds']
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
@@ -205,13 +158,8 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        end, start = t_ns + self.start_ns, tick_start_ns + self.start_ns
-        self._links.pack(t_ns, tick_start_ns, self.start_ns, self._words, self._values)
-        if len(self._bodies) > 1:
-            np.concatenate(self._bodies, out=self._of_bodies)
-        pack(time_word(end), time_word(start), ATMOSPHERE,
-             self._samples, self._rows.applied, self._supplies, self._of_bodies, self._words,
-             self._values, self._target)
+        self._packing.times[:] = t_ns, tick_start_ns, self.start_ns
+        self._pack.run()
         if self._periods:
             self._not_due = frozenset(
                 name for name, period in self._periods.items()
@@ -220,10 +168,8 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes(), (self._sent_kinds != 0).tobytes(), self._not_due
-        where = self._layouts.get(key)
-        if where is None:
-            where = self._layouts[key] = self._layout()
+        where = self._layout_of(
+            (self._kinds != 0).tobytes(), (self._sent_kinds != 0).tobytes(), self._not_due)
         packed = Packed(self._bytes, where)
         extra = [(self._index[topic], data) for topic, data in self.rare.items()]
         extra += self.of_events(events)
@@ -231,16 +177,42 @@ class Packer:
             return packed
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
+    def quiet_ticks(self, t_ns: int, step_ns: int) -> int:
+        """Return how many ticks after ``t_ns`` have the layout of a quiet one."""
+        ends = (t_ns // period * period + period for period in self._rare_periods(step_ns).values())
+        return min((-((t_ns - end) // step_ns) - 1 for end in ends), default=_MANY)
+
+    def quiet_layout(self, step_ns: int) -> Layout:
+        """Return the layout of a tick without commands, and without what few ticks have."""
+        return self._layout_of(bytes(len(self._kinds)), bytes(len(self._kinds)),
+                               frozenset(self._rare_periods(step_ns)))
+
+    def _rare_periods(self, step_ns: int) -> dict[str, int]:
+        return {name: period for name, period in self._periods.items() if period > step_ns}
+
+    def recording(self, clock: NDArray[np.int64], layout: Layout, room: Room) -> Bound:
+        """Return what packs and records quiet ticks into a room; ``clock`` as of a sink."""
+        self._packing.times[2] = self.start_ns
+        return Bound(record, Recording(
+            clock, self._packing, self._bytes, layout, room.buffer,
+            np.array([room.at, room.tick_bytes], np.int64)))
+
     def of_events(self, events: Sequence[bytes]) -> Packed:
         """Return messages of events alone."""
         return Packed.of([(self._index[event.TOPIC[0]], data) for data in events])
 
-    def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: of applied setpoints, and of what is due."""
-        absent = self._not_due.union(
-            f'/{name}/{suffix}'
-            for suffix, of_all in ((_SETPOINT, self._kinds), (_SENT, self._sent_kinds))
-            for (name, _), kinds in zip(self._names.actuators, of_all) if not kinds)
+    def _layout_of(self, applied: bytes, sent: bytes, not_due: frozenset[str]) -> Layout:
+        """Return the layout of a tick, by what each actuator has and what is not due."""
+        key = applied, sent, not_due
+        found = self._layouts.get(key)
+        if found is None:
+            found = self._layouts[key] = self._without(not_due.union(
+                f'/{name}/{suffix}' for suffix, of_all in ((_SETPOINT, applied), (_SENT, sent))
+                for (name, _), is_there in zip(self._names.actuators, of_all) if not is_there))
+        return found
+
+    def _without(self, absent: Collection[str]) -> Layout:
+        """Return the layout of all topics but some."""
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -290,9 +262,10 @@ class Packer:
 def _n_columns(rows: PublishedRows) -> int:
     """Return the number of values of all rows, without the words of links."""
     body = sum(floats(sample).size for sample in rows.bodies.values())
-    own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+    own = len(_SAMPLE) + len(PRESSURES) + len(APPLIED)
     return len(rows.samples) * own + len(rows.supplies) * len(SIGNALS) + body
 
 
+_MANY = 1_000_000     # ticks
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _SENT = SENT_SETPOINT[0]

@@ -15,7 +15,7 @@ import numba
 from numba.core.dispatcher import Dispatcher
 
 _OF_TICK = ('actuator', 'loads', 'plant', 'reu', 'surroundings')
-_PACKING = ('run.packing', 'run.link_packing')
+_PACKING = ('run.link_packing', 'run.pack_kernel')
 
 
 def provenance_of(

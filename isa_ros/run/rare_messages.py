@@ -7,11 +7,10 @@ They have texts, or values of any number, so that they have no place in a prepar
 from collections.abc import Iterator, Mapping, Sequence
 
 from isa_ros.core.accounts import accounts_of
-from isa_ros.core.device import FIELDS
-from isa_ros.core.kernel import kernel_function
+from isa_ros.core.device import FIELDS, is_status_due
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
-from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
 from msg_adapters.applied_parameters import applied_parameters
@@ -20,22 +19,7 @@ PARAMETERS, DEVICE = actuator_messages.APPLIED_PARAMETERS[0], actuator_messages.
 OF_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS[0]
 DIAGNOSTICS = diagnostics.TOPIC[0]
 _FIELDS = tuple(SAMPLE.names or ())
-_SINCE, _AGE, _STALE = (_FIELDS.index(name) for name in ('state_since', 'age', 'is_stale'))
-_HALF_STEP_NS = 0.5 * PLANT_STEP_NS
-
-
-@kernel_function
-def is_status_due(
-        since: float, age: float, is_stale: float, t_ns: int, tick_start_ns: int) -> bool:
-    """
-    Return whether a tick that ends at ``t_ns`` has a message of a device, by its `SAMPLE`.
-
-    It is one in which the status has changed, as far as it has arrived over a link, or a second
-    of simulated time ended; t = 0. ``since`` and ``age`` are ``state_since`` and the age, s.
-    """
-    arrived = since + (0.0 if is_stale else age)
-    return (arrived * NS_PER_SECOND > tick_start_ns - _HALF_STEP_NS
-            or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
+_OF_STATUS = [_FIELDS.index(name) for name in ('state_since', 'age', 'is_stale')]
 
 
 class RareMessages:
@@ -89,9 +73,8 @@ class RareMessages:
 
     def has_device(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
         """Return whether a tick has a message of an actuator's device; also after `announce`."""
-        own = self._values[row]
-        return self._announces or bool(
-            is_status_due(own[_SINCE], own[_AGE], own[_STALE], t_ns, tick_start_ns))
+        since, age, is_stale = self._values[row, _OF_STATUS].tolist()
+        return self._announces or is_status_due(since, age, is_stale, t_ns, tick_start_ns)
 
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""

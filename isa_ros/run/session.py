@@ -81,7 +81,9 @@ class Session:
         """Return the source of the commands."""
         if self.source is not None:
             return self.source()
-        return nullcontext(ScheduledSource(self.scenario.commands, self.scenario.changes))
+        return nullcontext(ScheduledSource(
+            self.scenario.commands, self.scenario.changes,
+            next_command=self.scenario.next_command))
 
 
 def _unchanged(run: RunConfig) -> RunConfig:

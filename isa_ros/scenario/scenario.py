@@ -6,6 +6,7 @@ of a body, or has controllers, gives its own `run`: the configuration to simulat
 replay.
 """
 
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -129,6 +130,17 @@ class Scenario:
     def has_commands_at(self, tick: int) -> bool:
         """Return whether a command of the scenario takes effect at a tick."""
         return tick in self._events or tick >= self._first_motion
+
+    def next_command(self, tick: int) -> float:
+        """Return the first tick from ``tick`` on with a command; infinite: none comes."""
+        if tick >= self._first_motion:
+            return tick
+        k = bisect_left(self._event_ticks, tick)
+        return self._event_ticks[k] if k < len(self._event_ticks) else math.inf
+
+    @cached_property
+    def _event_ticks(self) -> list[int]:
+        return sorted(self._events)
 
     @cached_property
     def _events(self) -> frozenset[int]:

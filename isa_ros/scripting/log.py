@@ -1,14 +1,17 @@
 """Every row of a run in memory."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from isa_ros.core.bound import Bound, nothing, Part
+from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import Progress
 from isa_ros.tick.exchange import Rows, RowSink
 import numpy as np
+from numpy.typing import NDArray
 
 _REPORT_TICKS = 100     # ticks between two reports of progress
 
@@ -34,11 +37,31 @@ class Log(NamedTuple):
     """Those of the supplies, by sample and SUPPLY.KEY."""
 
 
+class _Kept(NamedTuple):
+    """Memory of `keep`."""
+
+    clock: NDArray[np.int64]
+    """Finished ticks, and the tick in ns, (2,)."""
+    source: NDArray[np.float64]
+    """Numbers of a sample, (f,)."""
+    rows: NDArray[np.float64]
+    """By sample, (n, f)."""
+
+
+@kernel
+def keep(own):
+    """Copy the source of a sample; return 0."""
+    row = own.rows[own.clock[0]]
+    for k in range(len(row)):
+        row[k] = own.source[k]
+    return 0
+
+
 class _Column:
     """The rows of one source by sample, in an array that grows."""
 
     def __init__(self, source: Records, n: int, *shape: int) -> None:
-        self._source = floats(source).reshape(-1)
+        self._source: NDArray[np.float64] = floats(source).reshape(-1)
         self.rows: Records = np.zeros((n, *shape), source.dtype)
         self._floats = floats(self.rows)
 
@@ -49,6 +72,10 @@ class _Column:
             larger[:len(self.rows)] = self.rows
             self.rows, self._floats = larger, floats(larger)
         self._floats[tick] = self._source
+
+    def keeping(self, clock: NDArray[np.int64]) -> Bound:
+        """Return what copies the source of a quiet tick, for which there is a row."""
+        return Bound(keep, _Kept(clock, self._source, self._floats))
 
 
 class LogSink(RowSink):
@@ -98,6 +125,19 @@ class LogSink(RowSink):
             self._tuned_supplies[tick] = rows.tuned_supplies
         if self._report is not None and tick % _REPORT_TICKS == 0:
             self._report(tick, self._n_ticks)
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return how many have a row already, up to the next report of progress."""
+        return min(len(self._samples.rows) - 1 - tick, _REPORT_TICKS - 1 - tick % _REPORT_TICKS)
+
+    def begin_quiet(
+            self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
+        """Return what copies the rows."""
+        return most, [Part(column.keeping(clock), nothing) for column in self._all]
+
+    def end_quiet(self, tick: int, n_ticks: int) -> None:
+        """Count the samples."""
+        self._taken = tick + n_ticks + 1
 
     def end(self) -> None:
         """Report the end."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from isa_ros.core.bound import Bound, Part
+from isa_ros.core.bound import Bound, nothing, Part
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
 from isa_ros.core.parameter import check, fault, Parameters
@@ -47,10 +47,6 @@ class _EmergencyStop(Parameters):
 def line_of(group: str) -> str:
     """Return what the names of a group's values begin with."""
     return f'{EMERGENCY_STOP}.{group}'
-
-
-def _nothing(found: int) -> None:
-    """Do nothing: it finds nothing."""
 
 
 class Surroundings:
@@ -250,15 +246,15 @@ class Surroundings:
         if len(supplies) < len(self._supplies) or len(bodies) < len(self.bodies):
             return None
         filling = [*(own.filling for own in supplies), *(own.filling for own in bodies)]
-        before = [Part(own.to(ports), _nothing) for own in filling]
+        before = [Part(own.to(ports), nothing) for own in filling]
         after = [Part(body.advancing.to(replies), body.refuse) for body in bodies]
         answers = self._ports.answers
         if self.has_supply_ports:
-            before += [Part(own.feeding.to(answers, feeds), _nothing)
+            before += [Part(own.feeding.to(answers, feeds), nothing)
                        for own in supplies if own.has_port]
-            after.append(Part(Bound(keep_answers, Answers(fed, answers)), _nothing))
+            after.append(Part(Bound(keep_answers, Answers(fed, answers)), nothing))
         after += [Part(own.advancing.to(replies, answers if own.has_port else _NO_ANSWERS),
-                       _nothing) for own in supplies]
+                       nothing) for own in supplies]
         return before, after
 
     def snapshot(self) -> bytes:

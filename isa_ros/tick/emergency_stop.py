@@ -194,6 +194,10 @@ class EmergencyStops:
         return {**changes, **{
             row: {**changes.get(row, {}), LINE: value} for row, value in new.items()}}
 
+    def is_quiet(self, samples: Records) -> bool:
+        """Return whether `act` changes nothing as long as ``samples`` have no other trips."""
+        return not self._groups or (self._is_idle and not samples['trips'].any())
+
     def _is_new(self, of: int | str, is_open: bool) -> bool:
         """Note what an actuator or a supply is told; return whether it was told otherwise."""
         was, self._told[of] = self._told.get(of, False), is_open

@@ -5,10 +5,12 @@ from typing import NamedTuple, Protocol
 
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.rows import memory_of
+from isa_ros.core.bound import Part
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
+from numpy.typing import NDArray
 
 IDLE_S = 0.005
 """Host time between two checks for requests while a run is paused."""
@@ -41,7 +43,8 @@ class Rows:
             self, n_actuators: int, surroundings: Surroundings,
             group: ActuatorGroup | None = None) -> None:
         written = memory_of(n_actuators) if group is None else group
-        self.ports: Records = np.zeros(n_actuators, LOAD_PORT)
+        self.ports: Records = (
+            np.zeros(n_actuators, LOAD_PORT) if group is None else group.ticked.ports)
         """Boundary values of the tick, from the surroundings to the actuators."""
         self.feeds: Records = written.feeds
         """Ports of the supplies, from the surroundings to the actuators; zeros without."""
@@ -49,7 +52,8 @@ class Rows:
         """Whether a supply has one."""
         self.fed: Records = written.fed
         """What actuators answered to them, at the end of the tick."""
-        self.commands: Records = np.zeros(n_actuators, COMMAND)
+        self.commands: Records = (
+            np.zeros(n_actuators, COMMAND) if group is None else group.ticked.commands)
         """Commands that take effect at the tick's start."""
         self.replies: Records = written.replies
         """Results of the tick, from the actuators to the surroundings."""
@@ -85,6 +89,11 @@ class Rows:
         self._request_bytes = self.requests.view(np.uint8).data
         self._no_requests = bytes(self.requests.nbytes)
 
+    @property
+    def has_requests(self) -> bool:
+        """Return whether a controller requests something for the next tick."""
+        return bool(self._request_bytes != self._no_requests)
+
     def take_requests(self) -> None:
         """Make the requests the commands of this tick, and begin with no requests."""
         self._command_bytes[:] = self._request_bytes
@@ -101,6 +110,11 @@ class Transport(Protocol):
     @property
     def group(self) -> ActuatorGroup | None:
         """Return the actuators if they are in this process, for `Rows`."""
+        ...
+
+    @property
+    def is_quiet(self) -> bool:
+        """Return whether nothing but the actuators has to be looked at in each tick."""
         ...
 
     def join(self, rows: Rows) -> None:
@@ -184,6 +198,26 @@ class RowSink:
 
     def take(self, tick: int, rows: Rows) -> None:
         """Take the rows at t = ``tick`` step_ns; the next tick overwrites them."""
+
+    def quiet_ticks(self, tick: int) -> int:
+        """
+        Return how many ticks after ``tick`` ones it can take by kernels, if these are quiet.
+
+        The rows of ``tick`` were taken. A sink that needs to be called at each returns 0.
+        """
+        return 0
+
+    def begin_quiet(
+            self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
+        """
+        Return for how many quiet ticks after ``tick`` it is ready, and what takes their rows.
+
+        The kernels find nothing; ``clock`` has the finished ticks and the tick in ns.
+        """
+        return most, ()
+
+    def end_quiet(self, tick: int, n_ticks: int) -> None:
+        """Take note that the kernels have taken the rows of so many ticks after ``tick``."""
 
     def add_event(self, tick: int, text: str) -> None:
         """Take an event before ``tick``: a pause, a step, a reset."""

@@ -17,6 +17,11 @@ class Input(Protocol):
         """Process the setpoints and requests that have arrived; do not wait."""
         ...
 
+    @property
+    def is_commanded(self) -> bool:
+        """Return whether somebody is there who may send setpoints."""
+        ...
+
 
 class InProcess:
     """
@@ -31,6 +36,11 @@ class InProcess:
         self.group = group
         self._starts = starts
         self._inputs = inputs
+
+    @property
+    def is_quiet(self) -> bool:
+        """Return whether nobody is there who may send setpoints."""
+        return not any(own.is_commanded for own in self._inputs)
 
     def join(self, rows: Rows) -> None:
         """Start all at t = 0."""

@@ -1,6 +1,8 @@
 """Where the commands of a run come from: its scenario, a bag, or the master of a bus."""
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
+import math
 from typing import Protocol
 
 from isa_ros.core.signals import Records
@@ -19,6 +21,14 @@ class Source(Protocol):
         Return whether the commands of a tick are there, after at most a moment's wait.
 
         ``samples`` are the `SAMPLE` rows at the tick's start, (n_actuators,).
+        """
+        ...
+
+    def quiet_until(self, tick: int) -> float:
+        """
+        Return the first tick from ``tick`` on for which it has to be asked at all.
+
+        It is ``tick`` itself where that is not known.
         """
         ...
 
@@ -52,14 +62,25 @@ class ScheduledSource:
     A `Source` that is known in advance and never waits: a scenario, or what a bag has recorded.
 
     ``commands`` overwrites `COMMAND` rows of a tick, as `Scenario.commands`; ``changes`` and
-    ``events`` are given by tick.
+    ``events`` are given by tick. ``next_command`` returns the first tick from one on at which
+    ``commands`` may do something (None: every tick).
     """
 
     def __init__(
             self, commands: Callable[[int, Records], None],
             changes: Mapping[int, ParameterChanges] = {},
-            events: Mapping[int, Sequence[str]] = {}) -> None:
+            events: Mapping[int, Sequence[str]] = {},
+            next_command: Callable[[int], float] | None = None) -> None:
         self.commands, self.changes, self._events = commands, changes.get, events
+        self._next_command = next_command
+        self._others = sorted({*changes, *events})
+
+    def quiet_until(self, tick: int) -> float:
+        """Return the first tick from ``tick`` on with a command, a change or an event."""
+        if self._next_command is None:
+            return tick
+        k = bisect_left(self._others, tick)
+        return min(self._next_command(tick), *self._others[k:k + 1], math.inf)
 
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True."""

@@ -17,6 +17,7 @@ from isa_ros.requests import merge_requests
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
 from isa_ros.tick.exchange import Rows, RowSink, Transport
+from isa_ros.tick.quiet import QuietTicks
 from isa_ros.tick.source import Source
 
 BEFORE_TICKS = 'between ticks'
@@ -58,6 +59,7 @@ class TickLoop:
         self.stops = stops
         """The emergency stops."""
         self._request_range, self._warn, self._lap = request_range, warn, lap
+        self._quiet = QuietTicks.of(transport.group, surroundings, rows, step_ns)
 
     @property
     def t_ns(self) -> int:
@@ -123,6 +125,34 @@ class TickLoop:
             sink.take(self.ticks, rows)
         self._lap('messages')
 
+    def advance_quietly(self, until: int) -> None:
+        """
+        Advance in one call as far as nothing unusual happens, at most to tick ``until``.
+
+        Possibly by no tick: `advance` then goes on. Raises as `advance`.
+        """
+        rows, tick = self.rows, self.ticks
+        if self._quiet is None or not self._is_quiet():
+            return
+        most = min(until, self.source.quiet_until(tick)) - tick
+        if most < 1:
+            return
+        kept, is_seen = self._quiet.run(tick, int(most), self.sinks)
+        self.ticks += kept + is_seen
+        if is_seen:
+            for sink in self.sinks:
+                sink.take_time(self.ticks)
+                sink.take(self.ticks, rows)
+        self._lap('quiet ticks')
+
+    def _is_quiet(self) -> bool:
+        """Return whether nothing waits to take effect that the compiled loop does not know."""
+        rows = self.rows
+        group = self.transport.group
+        return (group is not None and group.is_settled and self._surroundings.is_settled
+                and self.transport.is_quiet and not rows.has_requests
+                and (self.stops is None or self.stops.is_quiet(rows.samples)))
+
     def _command(self, given: Records | None) -> None:
         """
         Fill the commands of this tick, and change the parameters that the source changes.
@@ -166,6 +196,7 @@ class TickLoop:
         """After `join`, advance to t = n_ticks step_ns; raises as `advance`."""
         self.begin(state)
         while self.ticks < n_ticks:
+            self.advance_quietly(n_ticks - 1)   # the last one is for Python, which ends the run
             self.advance()
         self.finish()
         self.end()

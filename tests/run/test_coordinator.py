@@ -124,6 +124,9 @@ class FakeSource:
             return False
         return True
 
+    def quiet_until(self, tick: int) -> float:
+        return tick
+
     def commands(self, tick: int, out: Records) -> None:
         out['kinds'][1] = tick
 

@@ -157,6 +157,11 @@ class ActuatorNode(Node):
         self._inputs.serve()
         self._incompatible.check()
 
+    @property
+    def is_commanded(self) -> bool:
+        """Return whether a publisher of setpoints is there."""
+        return bool(self._setpoints.get_publisher_count())
+
     def get_parameter(self, name: str) -> Parameter:
         """Return a parameter; for a gain its current value, set by a service or a setpoint."""
         tuned = None if self._tunables is None else self._tunables.get(name)

@@ -44,6 +44,7 @@ class LockstepTransport:
     """
 
     group = None
+    is_quiet = False
 
     def __init__(
             self, node: Node, participants: Participants, limits: Limits, *,

@@ -14,6 +14,7 @@ class MixedTransport:
         self._actuators = actuators
         self._controllers = controllers
         self.group = actuators.group
+        self.is_quiet = False
         self.send = controllers.send
 
     def join(self, rows: Rows) -> None:

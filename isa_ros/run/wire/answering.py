@@ -8,12 +8,12 @@ and their numbers only. It ends with what is left to Python, see `Ended`.
 from enum import IntEnum
 from typing import NamedTuple
 
+from isa_ros.core.device import is_status_due
 from isa_ros.core.kernel import kernel
 from isa_ros.core.pointers import call_at
 from isa_ros.core.signals import COMMAND, EVERY_KIND, LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.system_calls import monotonic_ns, receive, send, SystemCalls
 from isa_ros.core.timebase import PLANT_STEP_NS
-from isa_ros.run.rare_messages import is_status_due
 from isa_ros.run.wire.parts import is_valid_command
 from isa_ros.run.wire.words import (
     ANSWER_HEAD, are_finite, begins_with, copy_words, STEP_HEAD, WORD, write_tick)

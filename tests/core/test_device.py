@@ -1,7 +1,7 @@
 """When a device has a message: the same by Python and compiled."""
 
+from isa_ros.core.device import is_status_due
 from isa_ros.core.kernel import kernel
-from isa_ros.run.rare_messages import is_status_due
 import pytest
 
 TICK, NOW = 1_000_000, 5_000_000

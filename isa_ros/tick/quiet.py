@@ -1,0 +1,106 @@
+"""
+Ticks in which nothing unusual happens, many of them in one compiled loop.
+
+Such a tick is kernels alone: ports of supplies and bodies, actuators, bodies and supplies, and
+what the sinks keep of the rows. They are the kernels that `isa_ros.tick.tick_loop` calls one by
+one, over the same memory, so that the bytes of a run do not depend on how many ticks are in a
+call. A command or a value that changes, a trip, a device that changes its state, a full second:
+these are looked at in Python, and `watch` ends the loop where actuators have caused one.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.core.bound import Bound, nothing, Part, Program
+from isa_ros.core.device import is_status_due
+from isa_ros.core.kernel import kernel
+from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.exchange import Rows, RowSink
+import numpy as np
+
+
+class Watched(NamedTuple):
+    """Memory of `watch`."""
+
+    clock: np.ndarray
+    """Finished ticks, and the tick in ns, int64, (2,)."""
+    samples: np.ndarray
+    """`SAMPLE` that listeners have, (n,)."""
+    applied: np.ndarray
+    """`COMMAND` that took effect in the tick, (n,)."""
+    sent: np.ndarray
+    """`COMMAND` handed to a link, (n,)."""
+    trip_times: np.ndarray
+    """Of the last trip of each actuator before, s, (n,)."""
+
+
+@kernel
+def watch(own):
+    """Finish a tick; return 1 if it is one for Python, else 0."""
+    own.clock[0] += 1
+    end_ns = own.clock[0] * own.clock[1]
+    start_ns = end_ns - own.clock[1]
+    for n in range(len(own.samples)):
+        sample = own.samples[n]
+        if (own.applied[n].kinds != 0 or own.sent[n].kinds != 0
+                or sample.trip_time != own.trip_times[n]
+                or is_status_due(
+                    sample.state_since, sample.age, sample.is_stale, end_ns, start_ns)):
+            return 1
+    return 0
+
+
+class QuietTicks:
+    """
+    The compiled loop over the ``group`` and the ``surroundings`` of a run, with its ``rows``.
+
+    ``before`` and ``after`` are from `Surroundings.parts` for these rows.
+    """
+
+    def __init__(
+            self, group: ActuatorGroup, surroundings: Surroundings, rows: Rows, step_ns: int,
+            before: Sequence[Part], after: Sequence[Part]) -> None:
+        self._group, self._surroundings, self._rows = group, surroundings, rows
+        self._clock = np.array([0, step_ns], np.int64)
+        self._trip_times = np.zeros(len(rows.samples))
+        self._actuators = Part(group.tick, group.refuse)
+        watched = Watched(self._clock, rows.samples, rows.applied, rows.sent, self._trip_times)
+        self._tick = (*before, self._actuators, *after, Part(Bound(watch, watched), nothing))
+        self._place = len(before)
+
+    @classmethod
+    def of(cls, group: ActuatorGroup | None, surroundings: Surroundings, rows: Rows,
+           step_ns: int) -> 'QuietTicks | None':
+        """Return the loop of a run; None: a part of its ticks is not a kernel."""
+        if group is None:
+            return None
+        parts = surroundings.parts(rows.ports, rows.feeds, rows.replies, rows.fed)
+        return None if parts is None else cls(group, surroundings, rows, step_ns, *parts)
+
+    def run(self, tick: int, most: int, sinks: Sequence[RowSink]) -> tuple[int, bool]:
+        """
+        Run up to ``most`` ticks after ``tick`` ones, as far as the sinks need no Python.
+
+        Returns how many sinks have kept, and whether one more is finished, which they have not.
+        """
+        for sink in sinks:
+            most = min(most, sink.quiet_ticks(tick))
+            if not most:
+                return 0, False
+        self._clock[0] = tick
+        self._trip_times[:] = self._rows.samples['trip_time']
+        self._rows.take_requests()
+        self._group.set_clock()
+        parts = [*self._tick]
+        for sink in sinks:
+            most, own = sink.begin_quiet(tick, most, self._clock)
+            parts += own
+        done, place, found = Program([part.bound for part in parts]).run(most)
+        self._rows.tuned, self._rows.tuned_supplies = {}, {}
+        self._group.pass_ticks(done + (place >= self._place))
+        for sink in sinks:
+            sink.end_quiet(tick, done)
+        if place >= 0:
+            parts[place].found(found)
+        return done, place >= 0
