@@ -3,9 +3,10 @@
 import math
 
 from hypothesis import given, strategies as st
+from isa_ros.core.record import floats
 from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
-    HAS_SETPOINT)
+    HAS_SETPOINT, SAMPLE)
 from isa_ros.errors import SetpointError
 from isa_ros.run.link_packing import pack_links, WORDS
 from msg_adapters.cdr import encode
@@ -30,7 +31,9 @@ def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled:
     applied['due_step'] = due_step
     words = np.zeros(WORDS, np.uint64)
     pack = pack_links if compiled else pack_links.py_func
-    pack(T_NS, TICK_START_NS, STAMPS_NS, 0, np.array([0]), np.array([age]), applied,
+    sample = np.zeros(1, SAMPLE)
+    sample['age'] = age
+    pack(T_NS, TICK_START_NS, STAMPS_NS, 0, np.array([0]), floats(sample), applied,
          command.view(np.recarray), words, words.view(np.float64))
     return words
 

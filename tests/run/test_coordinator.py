@@ -32,6 +32,9 @@ RUN = hip_and_knee()
 class FakeTransport:
     """Two participants whose position is the tick; the first applies something at tick 1."""
 
+    group = None
+    is_quiet = False
+
     def __init__(self, log: list[str]) -> None:
         self.log = log
         self.failure: Exception | None = None

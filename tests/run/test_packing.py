@@ -7,10 +7,12 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.supplies import SupplyConfig
+from isa_ros.core import bound
 from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
 from isa_ros.run import packing
 from isa_ros.run.output import packer_of
+from isa_ros.run.pack_kernel import pack
 from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
@@ -317,12 +319,11 @@ def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
     rows.samples['velocity'] = np.nan, -0.0
     applied(rows, 1, position=0.3, stiffness=np.nan, is_enabled=1)
 
-    own = rows._replace(applied=rows.applied.view(np.recarray))  # fields by dot in Python too
-
     def packed() -> list[tuple[int, bytes]]:
-        packer = Packer(Names([('hip', True), ('knee', False)], [('supply', MAIN[1])]), own)
+        packer = Packer(Names([('hip', True), ('knee', False)], [('supply', MAIN[1])]), rows)
         packer.pack(T_NS, TICK_NS, {})
         return list(packer.all_messages())
     compiled = packed()
-    monkeypatch.setattr(packing, 'pack', packing.pack.py_func)
+    monkeypatch.setattr(bound, 'IS_COMPILED', False)
+    monkeypatch.setattr(packing, 'pack', pack.py_func)
     assert packed() == compiled

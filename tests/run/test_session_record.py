@@ -66,9 +66,9 @@ def test_what_tripped_is_told_also_where_the_run_was_stopped(tmp_path: Path):
 
 
 def test_a_state_saved_after_a_reset_lies_in_the_bag_of_that_run(tmp_path: Path):
-    """In the second one: the first has another history."""
+    """In the second one: the first has another history; with a pace each tick is served."""
     session = prepare(Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
-                              duration_s=0.005))
+                              duration_s=0.005, real_time_factor=1.0))
     saved = []
 
     def serve(coordinator: Coordinator) -> None:
