@@ -2,8 +2,8 @@
 The functions of C that machine code of kernels may call, defined here: an object needs no library.
 
 They are LLVM's text. Each gives what C's gives, bit for bit, but for the bits of a NaN: `floor`,
-`ceil`, `fmod` and `frexp` are exact, and the others copy bytes. They are weak and hidden: a program that
-an object is linked into keeps its own.
+`ceil`, `fmod` and `frexp` are exact, and the others copy bytes. They are weak and hidden: a
+program that an object is linked into keeps its own.
 """
 
 _MAGNITUDE = (1 << 63) - 1

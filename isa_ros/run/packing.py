@@ -22,7 +22,6 @@ from isa_ros.run.quiet_recording import record, Recording
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
 from isa_ros.run.supply_messages import of_supply, SIGNALS
 from isa_ros.surroundings.messages import BodyMessage
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
 from msg_adapters.actuator_messages import (
@@ -179,7 +178,7 @@ class Packer:
 
     def quiet_ticks(self, t_ns: int, step_ns: int) -> int:
         """Return how many ticks after ``t_ns`` have the layout of a quiet one."""
-        ends = (t_ns // period * period + period for period in self._rare_periods(step_ns).values())
+        ends = ((t_ns // period + 1) * period for period in self._rare_periods(step_ns).values())
         return min((-((t_ns - end) // step_ns) - 1 for end in ends), default=_MANY)
 
     def quiet_layout(self, step_ns: int) -> Layout:

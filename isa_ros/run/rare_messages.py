@@ -10,7 +10,6 @@ from isa_ros.core.accounts import accounts_of
 from isa_ros.core.device import FIELDS, is_status_due
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
-from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
 from msg_adapters.applied_parameters import applied_parameters

@@ -60,7 +60,8 @@ def test_only_the_entries_are_seen(entries, name):
     code = object_of(entries, TARGETS[name])
     assert code[:6] == b'\x7fELF\x02\x01' and code[18] == MACHINES[name]
     seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
-    assert seen == {*entries, 'floor', 'ceil', 'fmod', 'numba_frexp', 'memset', 'memcpy', 'memmove'}
+    assert seen == {
+        *entries, 'floor', 'ceil', 'fmod', 'numba_frexp', 'memset', 'memcpy', 'memmove'}
     assert undefined_symbols(code) == []
 
 

@@ -214,22 +214,22 @@ print(f"{result['supply.pressure'][0] * 1e-6:.3f} {result['supply.pressure'][-1]
 
 
 @pytest.mark.slow
-def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
+def test_a_supply_is_two_files(copied: PatchedCopy) -> None:
     """Its kind is in run files, resolved texts and lists, and its pressure at the valves."""
-    path = 'isa_ros/surroundings/supply.py'
+    path, kernel = 'isa_ros/surroundings/supply.py', 'isa_ros/surroundings/supply_tick.py'
     copied.replace(
         path, 'SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply\n', _FALLING)
     copied.replace(
-        path, '        self.has_port = isinstance(',
-        "        self._fall = sheet.pressure_mpa * MPA / getattr(sheet, 'lasts_s', math.inf)\n"
-        '        self.has_port = isinstance(')
-    copied.replace(
-        path, "            self.state['held_energy'] += paid - held\n",
-        "            self.state['held_energy'] += paid - held\n"
-        "        self.state['pressure'] -= self._fall * self._step\n")
+        path, '                          dump_fields(sheet.dump, self._step))], tick.IDEAL)\n',
+        '                          dump_fields(sheet.dump, self._step), self._step * MPA *\n'
+        "                          sheet.pressure_mpa / getattr(sheet, 'lasts_s', math.inf))],\n"
+        '                        tick.IDEAL)\n')
     copied.replace(path, 'from dataclasses import dataclass\n',
                    'from dataclasses import dataclass\nimport math\n')
-    assert names_of(copied.touched) == files_of('supply') and len(copied.touched) == 1
+    copied.replace(kernel, "    ('dump', DUMP)])", "    ('dump', DUMP), ('fall', 'f8')])")
+    copied.replace(kernel, '        lower(ideal[0], state)\n',
+                   '        lower(ideal[0], state)\n        state.pressure -= ideal[0].fall\n')
+    assert names_of(copied.touched) == files_of('supply') and len(copied.touched) == 2
     assert copied.python(_FALLS) == '20.000 19.000\n'
     assert 'lasts_s' in copied.isa(
         'params', 'rig_linear', '--set', 'supply.kind=falling', '--set',

@@ -19,7 +19,7 @@ from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.bodies.leg import stepping
-from isa_ros.surroundings.bodies.leg.inertial import Imu, IMU, imu_record
+from isa_ros.surroundings.bodies.leg.inertial import IMU, Imu, imu_record
 from isa_ros.surroundings.bodies.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_FIELDS, LEG_SAMPLE
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, LegSheet
