@@ -28,12 +28,12 @@ from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import supply_tick as tick
 from isa_ros.surroundings.accumulator import (
-    accumulator_node, AccumulatorSupply, capacitance, SUPPLY, supply_record)
+    AccumulatorSupply, capacitance, SUPPLY, supply_record)
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.dump import dump_fields, LagDump, NoneDump
 from isa_ros.surroundings.return_line import (
     HeldReturn, RETURN_LINE, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
-from isa_ros.surroundings.supply_port import FedNode, MovingPort, PORT_STEPS
+from isa_ros.surroundings.supply_port import MovingPort, PORT_STEPS
 from isa_ros.surroundings.supply_tick import held_pressure, SupplyRecords
 import numpy as np
 
@@ -245,13 +245,6 @@ class Supply:
     def return_pressure(self) -> float:
         """Return the gauge return pressure in Pa, constant over the next tick."""
         return float(self.state['return_pressure'][0])
-
-    def nodes(self) -> list[FedNode]:
-        """Return the node of its actuators where their pressure moves in a tick, or none."""
-        if not self.has_port:
-            return []
-        return [accumulator_node(self.records.supply.view(np.recarray)[0],
-                                 self.state.view(np.recarray)[0])]
 
     def advance(self, drawn: float, returned: float = 0.0, paid: float | None = None) -> None:
         """

@@ -97,7 +97,6 @@ class QuietTicks:
             most, own = sink.begin_quiet(tick, most, self._clock)
             parts += own
         done, place, found = Program([part.bound for part in parts]).run(most)
-        self._rows.tuned, self._rows.tuned_supplies = {}, {}
         self._group.pass_ticks(done + (place >= self._place))
         for sink in sinks:
             sink.end_quiet(tick, done)

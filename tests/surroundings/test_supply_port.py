@@ -7,7 +7,7 @@ from isa_ros.core.signals import SUPPLY_PORT, SUPPLY_REPLY
 from isa_ros.core.units import LPM
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.scripting.run import load
-from isa_ros.surroundings.accumulator import AccumulatorSupply
+from isa_ros.surroundings.accumulator import accumulator_node, AccumulatorSupply
 from isa_ros.surroundings.dump import ValveDump
 from isa_ros.surroundings.supply import Supply
 from isa_ros.surroundings.supply_port import FedNode, fill_feeds, MovingPort, SupplyPorts
@@ -50,10 +50,17 @@ def test_a_shut_valve_stands_for_all(conductances: list[float]) -> None:
     assert feeds_of([0.0] * 3, conductances)['share'][0] == 2.0
 
 
+def node_of(plant: Supply) -> FedNode:
+    """Return the node of a supply."""
+    node: FedNode = accumulator_node(
+        plant.records.supply.view(np.recarray)[0], plant.state.view(np.recarray)[0])
+    return node
+
+
 def inflow(plant: Supply, pressure: float) -> float:
     """Return the node's inflow of a supply at another pressure."""
     plant.state['pressure'] = pressure
-    return plant.nodes()[0].inflow
+    return node_of(plant).inflow
 
 
 @pytest.mark.parametrize(('pressure', 'changes', 'slope'), [
@@ -65,7 +72,7 @@ def test_a_node_falls_with_its_pressure_by_its_slope(
     plant = Supply(replace(MOVING, **changes), MS, 2e-12)
     found = inflow(plant, pressure - 1e4) - inflow(plant, pressure + 1e4)
     plant.state['pressure'] = pressure
-    assert plant.nodes()[0].slope == pytest.approx(slope, rel=1e-12, abs=0.0)
+    assert node_of(plant).slope == pytest.approx(slope, rel=1e-12, abs=0.0)
     assert found / 2e4 == pytest.approx(slope, rel=1e-6, abs=1e-18)
 
 
@@ -75,7 +82,7 @@ def test_an_open_dump_is_half_of_its_flow_over_the_pressure(opening: float) -> N
     plant = Supply(replace(MOVING, dump=ValveDump(
         rated_lpm=60.0, rated_drop_mpa=0.7, time_constant_ms=20.0)), MS, 2e-12)
     plant.state['dump_opening'] = opening
-    node = plant.nodes()[0]
+    node = node_of(plant)
     assert node.inflow < 0.0
     assert node.slope == pytest.approx(-0.5 * node.inflow / 20.7e6, rel=1e-6, abs=0.0)
 
@@ -85,14 +92,13 @@ def test_the_pump_is_inflow_and_trend_of_its_node(flow_lpm: float) -> None:
     """C8: Q and (Q_demand - Q)/T, 0.2 of 0.5 MPa below the set point."""
     plant = Supply(MOVING, MS, 2e-12)
     plant.state['pressure'], plant.state['pump_flow'] = 20.5e6, flow_lpm * LPM
-    node = plant.nodes()[0]
+    node = node_of(plant)
     assert node.trend == pytest.approx((0.4 * 12.0 - flow_lpm) * LPM / 0.03, rel=1e-9, abs=0.0)
     assert node.inflow == pytest.approx(flow_lpm * LPM, rel=1e-12, abs=0.0)
     assert node.pressure == 20.5e6
 
 
 def test_a_supply_that_holds_its_pressure_has_no_node() -> None:
-    assert Supply(SHEET, MS, 2e-12).nodes() == []
     assert not Supply(SHEET, MS, 2e-12).has_port
 
 
