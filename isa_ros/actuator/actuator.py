@@ -16,7 +16,7 @@ from isa_ros.actuator.integration import state_name
 from isa_ros.actuator.link import link_key, NONE
 from isa_ros.actuator.requests import (
     link_answer, mode_after, mode_command, refusal_of, start_mode)
-from isa_ros.actuator.rest import rest_loops, rest_plant
+from isa_ros.actuator.rest import put_at_rest
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
@@ -79,7 +79,7 @@ class SmartActuator:
         constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
-        self._saved = SavedRows(config.name, self.memory, self.has_link)
+        self.saved = SavedRows(config.name, self.memory, self.has_link)
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = row_record(constants), row_record(self.memory.continuous)
         self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
@@ -89,7 +89,7 @@ class SmartActuator:
         self.ticked = ticked(self.memory, timing.steps)
         """Its tick's memory: ports, command and clock."""
         self._commands = self.ticked.commands
-        self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
+        self.first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
@@ -104,7 +104,7 @@ class SmartActuator:
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter."""
         own = self._config
-        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self._first_mode} '
+        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self.first_mode} '
                 f'{own.auto_enable}')
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
@@ -117,16 +117,19 @@ class SmartActuator:
         Pressures are gauge, Pa. The first sample has the sensor readings at that time. Tuned
         values stay, and are in force again from the first tick on.
         """
+        self.clear(position)
+        put_at_rest(self.memory, (position, force, supply_pressure, return_pressure),
+                    initial_gains(self.sheet.reu), self.first_mode, self._config.auto_enable)
+
+    def clear(self, position: float) -> None:
+        """Set the state to zero at t = 0, before `put_at_rest`, a load of its own at a position."""
         self.t_ns = 0
-        self._saved.clear()
+        self.saved.clear()
         self.memory.feeds.fill(0)
         self.memory.fed.fill(0)
         self.accept(gains_command(self.tuning.reset(position)))
         if self._changed_mode is not None:
             self.change_mode(self._changed_mode)
-        rest_plant(self.memory, position, force, supply_pressure, return_pressure)
-        rest_loops(self.memory, self._config.sheet.reu, self._first_mode,
-                   self._config.auto_enable)
 
     @property
     def sample(self) -> np.record:
@@ -295,7 +298,7 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        state = self._saved.snapshot(self.t_ns)
+        state = self.saved.snapshot(self.t_ns)
         return self.t_ns.to_bytes(TIME_BYTES, 'little') + state + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -309,15 +312,15 @@ class SmartActuator:
             beyond its range; the actuator is then as before.
 
         """
-        expected = TIME_BYTES + self._saved.nbytes + self.tuning.nbytes
+        expected = TIME_BYTES + self.saved.nbytes + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
-        found = self._saved.read(snapshot, TIME_BYTES)
-        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
+        found = self.saved.read(snapshot, TIME_BYTES)
+        self.tuning.restore(snapshot[TIME_BYTES + self.saved.nbytes:])
         self.t_ns = t_ns
-        self._saved.restore(found)
+        self.saved.restore(found)
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:

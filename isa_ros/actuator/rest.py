@@ -1,8 +1,15 @@
-"""An actuator at rest, at t = 0: its plant, what its sensors read, its loops and its device."""
+"""
+An actuator at rest, at t = 0: its plant, what its sensors read, its loops and its device.
+
+Python calls these functions as they are, and a library of an actuator has them compiled.
+"""
+
+from typing import Any, NamedTuple
 
 from isa_ros.actuator.inbox import write_applied
 from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
+from isa_ros.core.kernel import kernel_function
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.cushion import divide
 from isa_ros.plant.plant import exact_force
@@ -10,19 +17,63 @@ from isa_ros.plant.rest_oil import rest_oil
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.block_drive import LONG_AGO
-from isa_ros.reu.cascade import initial_gains
-from isa_ros.reu.wiring import Reu
 
 
-def rest_plant(
-        memory: Memory, position: float, force: float, supply: float, back: float) -> None:
+class Rows(NamedTuple):
+    """The rows of an actuator that `rest` reads and fills."""
+
+    own: Any
+    """`ACTUATOR`."""
+    state: Any
+    """`CONTINUOUS`."""
+    port: Any
+    """`LOAD_PORT` in force."""
+    thermal: Any
+    """`THERMAL_STATE`."""
+    reu: Any
+    """`REU_STATE`."""
+    channels: Any
+    """`CHANNELS_STATE`."""
+    sample: Any
+    """`SAMPLE`."""
+    reply: Any
+    """`LOAD_REPLY`."""
+    applied: Any
+    """`COMMAND` in force."""
+
+
+def put_at_rest(
+        memory: Memory, start: tuple[float, float, float, float], gains: tuple[float, float],
+        mode: int, is_enabled: bool) -> None:
+    """Put an actuator whose state is zero at rest, as `rest`."""
+    rest(Rows(*map(row_record, (
+        memory.constants, memory.continuous, memory.ports, memory.thermals, memory.reu,
+        memory.channels, memory.samples, memory.replies, memory.applied))),
+        start, gains, mode, is_enabled)
+    memory.observed[:] = memory.samples
+
+
+@kernel_function
+def rest(rows: Rows, start: Any, gains: Any, mode: int, is_enabled: bool) -> None:
     """
-    Put the plant of one actuator at rest at ``position``, holding ``force`` (N | Nm).
+    Put an actuator whose state is zero at rest; its loops hold what its sensors read.
 
-    ``supply`` and ``back`` are the gauge pressures at its ports, Pa.
+    ``start`` are the numbers of a `START`: position (m | rad), the force that it holds (N | Nm),
+    and the gauge pressures of supply and return, Pa. ``gains`` are stiffness and damping of its
+    impedance before the first setpoint. ``is_enabled``: it is enabled once it is initialised.
     """
-    own, state = row_record(memory.constants), row_record(memory.continuous)
-    port, thermal = row_record(memory.ports), row_record(memory.thermals)
+    own, state, port, thermal = rows.own, rows.state, rows.port, rows.thermal
+    rest_plant(own, start, state, port, thermal, rows.reply)
+    supply_pressure = rest_loops(
+        own, state, port, rows.reu, rows.channels, gains, mode, is_enabled)
+    first_sample(own, state, rows.reu, thermal, supply_pressure, rows.sample)
+    write_applied(HAS_SETPOINT | HAS_ENABLE, rows.reu, rows.applied)
+
+
+@kernel_function
+def rest_plant(own: Any, start: Any, state: Any, port: Any, thermal: Any, reply: Any) -> None:
+    """Put the plant of an `ACTUATOR` at rest, and its `LOAD_REPLY`."""
+    position, force, supply, back = start
     port.supply_pressure, port.return_pressure = supply, back
     state.supply.pressure = supply
     state.plant.mechanics.position = position
@@ -30,45 +81,51 @@ def rest_plant(
     rest_oil(own.plant, supply, back, force, state.plant)
     divide(state.plant, own.plant)
     thermal.oil = thermal.body = own.plant.thermal.start
-    reply = row_record(memory.replies)
     reply.force = exact_force(state.plant, state.load.position, state.load.velocity, own.plant)
     reply.position = position
 
 
-def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
+@kernel_function
+def rest_loops(
+        own: Any, state: Any, port: Any, reu: Any, channels: Any, gains: tuple[float, float],
+        mode: int, is_enabled: bool) -> float:
     """
-    Let the loops of one actuator hold what its sensors read, in a mode; write its first sample.
+    Let the loops of an `ACTUATOR` hold what its sensors read, in a mode.
 
-    ``is_enabled``: it is enabled once it is initialised.
+    Return the pressure of the supply that they read, Pa.
     """
-    own, state = row_record(memory.constants), row_record(memory.continuous)
-    reu = row_record(memory.reu)
-    supply_pressure = sense(
+    supply_pressure: float = sense(
         0, own.reu.current_steps, state.plant, state.load.position, state.load.velocity,
-        row_record(memory.ports).supply_pressure, own.plant, own.noise_key,
-        row_record(memory.channels), reu.measured)
-    at, reu.speed.position = reu.measured, reu.measured.position
-    for block, value in (
-            (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
-            (reu.pressure, at.pressure_a - at.pressure_b)):
-        block.measured = value
+        port.supply_pressure, own.plant, own.noise_key, channels, reu.measured)
+    at = reu.measured
+    reu.speed.position = at.position
+    reu.position.measured, reu.force.measured = at.position, at.force
+    reu.spool.measured = at.spool
+    reu.pressure.measured = at.pressure_a - at.pressure_b
     reu.setpoint.position = reu.protection.evidence.position = at.position
     device = reu.status
     device.flow.slow_force = at.force
-    for setpoint in (reu.setpoint, device.stop):
-        setpoint.stiffness, setpoint.damping = initial_gains(sheet)
+    reu.setpoint.stiffness, reu.setpoint.damping = gains
+    device.stop.stiffness, device.stop.damping = gains
     device.mode = device.acting = device.requested_mode = mode
     device.auto_enable = device.requested_enable = int(is_enabled)
     rules = own.reu.rules
-    device.is_energised = int(rules.opening > 0.0 and (
-        is_enabled and rules.initialisation == 0.0 or not rules.closes_when_off))
+    is_on_at_once = is_enabled and rules.initialisation == 0.0
+    device.is_energised = int(
+        rules.opening > 0.0 and (is_on_at_once or rules.closes_when_off == 0))
     device.is_open = int(rules.opening == 0.0 or device.is_energised == 1)
-    device.switched, state.plant.block.lift = LONG_AGO, float(device.is_energised)
-    sample = row_record(memory.samples)
+    device.switched = LONG_AGO
+    state.plant.block.lift = float(device.is_energised)
+    return supply_pressure
+
+
+@kernel_function
+def first_sample(
+        own: Any, state: Any, reu: Any, thermal: Any, supply_pressure: float,
+        sample: Any) -> None:
+    """Fill the `SAMPLE` of t = 0."""
     write_sample(state.plant, reu, sample)
     sample.supply_pressure = supply_pressure
-    thermal = row_record(memory.thermals)
-    sample.temperature = thermal.sensed = read_temperature(
+    thermal.sensed = read_temperature(
         0, thermal.oil, own.noise_key, own.plant.sensors.temperature, thermal.sensed)
-    memory.observed[:] = memory.samples
-    write_applied(HAS_SETPOINT | HAS_ENABLE, reu, row_record(memory.applied))
+    sample.temperature = thermal.sensed

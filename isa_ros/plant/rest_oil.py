@@ -1,11 +1,13 @@
 """The pressures of an actuator at rest: in its chambers, and in the hoses before them."""
 
+from isa_ros.core.kernel import kernel_function
 from isa_ros.plant.chambers import hydraulic_force
 from isa_ros.plant.return_spring import spring_force, vent_pressure
 from isa_ros.plant.service_lines import rest_lines
 import numpy as np
 
 
+@kernel_function
 def null_pressures(plant: np.record, supply: float, back: float) -> tuple[float, float]:
     """
     Return the pressures (Pa) into which the leaking lands divide that of the supply at null.
@@ -20,6 +22,13 @@ def null_pressures(plant: np.record, supply: float, back: float) -> tuple[float,
     return back + span * share_a, back + span * share_b
 
 
+@kernel_function
+def _possible(p: float, supply: float, back: float) -> float:
+    """Return the pressure between return and supply that is nearest."""
+    return min(max(p, back), supply)
+
+
+@kernel_function
 def rest_pressures(
         plant: np.record, supply: float, back: float, force: float) -> tuple[float, float]:
     """
@@ -32,21 +41,19 @@ def rest_pressures(
     oil = plant.chambers
     p_a, p_b = null_pressures(plant, supply, back)
     if plant.spring.is_on:
-        return min(max((force + oil.area_b * p_b) / oil.area_a, back), supply), p_b
+        return _possible((force + oil.area_b * p_b) / oil.area_a, supply, back), p_b
     lacking = force - hydraulic_force(p_a, p_b, oil)
     p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
-
-    def possible(p: float) -> float:
-        return min(max(p, back), supply)
-    if p_b != possible(p_b):
-        p_b = possible(p_b)
+    if p_b != _possible(p_b, supply, back):
+        p_b = _possible(p_b, supply, back)
         p_a = (force + oil.area_b * p_b) / oil.area_a
-    elif p_a != possible(p_a):
-        p_a = possible(p_a)
+    elif p_a != _possible(p_a, supply, back):
+        p_a = _possible(p_a, supply, back)
         p_b = (oil.area_a * p_a - force) / oil.area_b
-    return possible(p_a), possible(p_b)
+    return _possible(p_a, supply, back), _possible(p_b, supply, back)
 
 
+@kernel_function
 def rest_oil(
         plant: np.record, supply: float, back: float, force: float, state: np.record) -> None:
     """

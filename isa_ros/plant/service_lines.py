@@ -6,7 +6,7 @@ be absent. Flows are positive INTO a chamber, ``q_p`` OUT OF the supply, ``q_t``
 The pressure sensors are in the valve block: they read the hoses where there are any.
 """
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, kernel_function
 from isa_ros.plant import block_valve, chambers, hose, load_holding, servo_valve
 from isa_ros.plant.cavitation import lack
 from isa_ros.plant.counterbalance import (
@@ -136,10 +136,12 @@ def sensed_pressures(y, plant):
     return p_a, p_b
 
 
+@kernel_function
 def rest_lines(plant: np.record, pressures: tuple[float, float], state: np.record) -> None:
     """Put the hoses of a `LINES_STATE` at their pressures (Pa), the poppets where they stay."""
     if not plant.hoses.is_on:
         return
     volume = hose.soft_volume(plant.hoses)
-    state.lack_a, state.lack_b = (lack(p, 0.0, volume, plant.hoses) for p in pressures)
+    state.lack_a = lack(pressures[0], 0.0, volume, plant.hoses)
+    state.lack_b = lack(pressures[1], 0.0, volume, plant.hoses)
     state.lift_a, state.lift_b = plant.holding_a.is_stuck_open, plant.holding_b.is_stuck_open
