@@ -39,6 +39,7 @@ class PeerTransport:
     """A `Transport` to the workers of a `Link`, with the messages of the private wire."""
 
     group = None
+    is_quiet = False
 
     def __init__(
             self, link: Link, run: RunConfig, starts: Records,

@@ -76,6 +76,7 @@ def compiled_entry(entry: Any) -> Any:
     return made
 
 
+@cache
 def address_of(entry: Any) -> int:
     """Return the address of an entry's machine code; it is compiled or loaded if need be."""
     made = compiled_entry(entry)

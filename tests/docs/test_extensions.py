@@ -127,22 +127,27 @@ def with_inclinometer(copied: PatchedCopy) -> None:
 
         @kernel
         def read_imu(''').rstrip(' '))
+    path = f'{leg}stepping.py'
+    copied.replace(path, 'import read_imu\n', 'import calf_angle, read_imu\n')
+    copied.replace(path, '    """Of the units, (u, 6)."""\n',
+                   '    """Of the units, (u, 6)."""\n    angles: np.ndarray\n')
+    copied.replace(path, '    clock = own.clock[0]\n    for k in range(len(own.imus)):\n',
+                   '    clock = own.clock[0]\n    for k in range(len(own.angles)):\n'
+                   '        own.angles[k] = calf_angle(own.states)\n'
+                   '    for k in range(len(own.imus)):\n')
+    copied.replace(path, 'len(own.imus) > 0:', 'len(own.imus) + len(own.angles) > 0:')
     path = f'{leg}leg.py'
-    copied.replace(path, 'leg.inertial import Imu,', 'leg.inertial import calf_angle, Imu,')
     copied.replace(path, 'units: Sequence[InertialUnit] = ()) -> None:',
                    'units: Sequence[InertialUnit] = (), has_calf: bool = False) -> None:')
     copied.replace(path, 'sample_fields([unit.name for unit in units])\n',
-                   'sample_fields([unit.name for unit in units], has_calf)\n'
-                   '        self._has_calf = has_calf\n')
+                   'sample_fields([unit.name for unit in units], has_calf)\n')
     copied.replace(path, 'self._motion.nbytes:].view(\n            np.float64).reshape(-1, AXES)',
                    'self._motion.nbytes:].view(\n            np.float64)[:AXES * len(units)]'
-                   '.reshape(-1, AXES)')
-    copied.replace(path, '        for unit, imu, reading in zip(',
-                   '        if self._has_calf:\n'
-                   "            self._sample['calf_angle'] = calf_angle(self._state)\n"
-                   '        for unit, imu, reading in zip(')
-    copied.replace(path, '        if self._units:\n',
-                   '        if self._units or self._has_calf:\n')
+                   '.reshape(-1, AXES)\n'
+                   '        self._angles = self._sample.view(np.uint8).view(np.float64)['
+                   'self._sample.nbytes // 8 - has_calf:]')
+    copied.replace(path, 'self._periods, self._readings)',
+                   'self._periods, self._readings, self._angles)')
     copied.replace(path, 'sample_fields(names: Sequence[str])',
                    'sample_fields(names: Sequence[str], has_calf: bool = False)')
     copied.replace(path, 'zip(fields_of_unit(name), readings)))',
@@ -175,7 +180,7 @@ def with_inclinometer(copied: PatchedCopy) -> None:
 
 
 @pytest.mark.slow
-def test_a_sensor_on_a_link_is_of_four_files(copied: PatchedCopy) -> None:
+def test_a_sensor_on_a_link_is_of_five_files(copied: PatchedCopy) -> None:
     """Beside an inertial unit: file, field, unit, topic, bag and replay have it."""
     with_inclinometer(copied)
     assert names_of(copied.touched) == files_of('sensor on a link of the leg')
