@@ -11,7 +11,11 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 START_S = 3.0  # start of the coordinator's node, during which a signal is pending
 
 BREAKS_AT_START = "sys.modules['isa_ros.nodes.actuator.process'].init_ros = None"
-BREAKS_AT_TICK = """
+BY_PYTHON = """
+from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
+SteadyTicks.are_next = False
+"""
+BREAKS_AT_TICK = BY_PYTHON + """
 from isa_ros.actuator import actuator
 tick = actuator.SmartActuator.tick
 def breaking(self, *port):
@@ -20,7 +24,7 @@ def breaking(self, *port):
     tick(self, *port)
 actuator.SmartActuator.tick = breaking
 """
-DIVERGES_AT_TICK = """
+DIVERGES_AT_TICK = BY_PYTHON + """
 from isa_ros.actuator.actuator import SmartActuator
 advance = SmartActuator.tick
 def tick(self, port=None):
