@@ -6,7 +6,6 @@ from pathlib import Path
 import isa_ros
 from isa_ros.config.paths import find
 from isa_ros.core.accounts import SHARES
-from isa_ros.surroundings.bodies.robot.robot import Robot
 import numpy as np
 import pytest
 import yaml
@@ -28,14 +27,11 @@ def drop(folder: Path, step_ms: float, is_light: bool) -> np.ndarray:
     tree['body']['start'] |= {'height_mm': 50.0, 'roll_deg': 3.0, 'pitch_deg': 4.0}
     path = folder / f'drop_{step_ms}.yaml'
     path.write_text(json.dumps(tree))
-    means, advance = [], Robot.advance
-
-    def advanced(robot: Robot, replies: np.ndarray) -> None:
-        means.append(replies['mean_forces'][robot.rows].T.copy())
-        advance(robot, replies)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Robot, 'advance', advanced)
-        isa_ros.load(path).simulate(DURATION)
+    simulation, means = isa_ros.load(path).simulation(), []
+    rows = simulation.surroundings.bodies['body'].rows
+    for _ in range(round(DURATION / (step_ms * 1e-3))):
+        simulation.step()
+        means.append(simulation.group.replies['mean_forces'][rows].T.copy())
     return np.concatenate(means).reshape(round(DURATION / WINDOW), -1, 12).mean(axis=1)
 
 
