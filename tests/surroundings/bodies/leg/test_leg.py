@@ -357,3 +357,17 @@ def test_compiled_leg_equals_its_python_source():
             cwd=Path(__file__).resolve().parents[4]).stdout)
     assert outputs[0] == outputs[1]
     assert len(outputs[0]) > 100
+
+
+def test_a_leg_is_released_once():
+    """What holds it again later keeps holding it."""
+    own = Leg(SHEET, POSE, MS, release_ns=2 * MS)
+    ports = np.zeros(3, LOAD_PORT)
+    held = []
+    for _ in range(4):
+        own.ports(ports)
+        held.append(own.is_held)
+        own.advance(np.zeros(3, LOAD_REPLY))
+    own.hold()
+    own.ports(ports)
+    assert held == [True, True, False, False] and own.is_held
