@@ -122,7 +122,7 @@ class SmartActuator:
                     initial_gains(self.sheet.reu), self.first_mode, self._config.auto_enable)
 
     def clear(self, position: float) -> None:
-        """Set the state to zero at t = 0, before `put_at_rest`, a load of its own at a position."""
+        """Set the state to zero at t = 0, before `put_at_rest`; a load of its own to a place."""
         self.t_ns = 0
         self.saved.clear()
         self.memory.feeds.fill(0)
