@@ -79,7 +79,7 @@ class SmartActuator:
         constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
-        self.saved = SavedRows(config.name, self.memory, self.has_link)
+        self._saved = SavedRows(config.name, self.memory, self.has_link)
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = row_record(constants), row_record(self.memory.continuous)
         self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
@@ -89,7 +89,7 @@ class SmartActuator:
         self.ticked = ticked(self.memory, timing.steps)
         """Its tick's memory: ports, command and clock."""
         self._commands = self.ticked.commands
-        self.first_mode = start_mode(config.name, config.mode, config.sheet.reu)
+        self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
@@ -104,7 +104,7 @@ class SmartActuator:
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter."""
         own = self._config
-        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self.first_mode} '
+        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self._first_mode} '
                 f'{own.auto_enable}')
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
@@ -119,12 +119,12 @@ class SmartActuator:
         """
         self.clear(position)
         put_at_rest(self.memory, (position, force, supply_pressure, return_pressure),
-                    initial_gains(self.sheet.reu), self.first_mode, self._config.auto_enable)
+                    initial_gains(self.sheet.reu), self._first_mode, self._config.auto_enable)
 
     def clear(self, position: float) -> None:
         """Set the state to zero at t = 0, before `put_at_rest`; a load of its own to a place."""
         self.t_ns = 0
-        self.saved.clear()
+        self._saved.clear()
         self.memory.feeds.fill(0)
         self.memory.fed.fill(0)
         self.accept(gains_command(self.tuning.reset(position)))
@@ -298,7 +298,7 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        state = self.saved.snapshot(self.t_ns)
+        state = self._saved.snapshot(self.t_ns)
         return self.t_ns.to_bytes(TIME_BYTES, 'little') + state + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -312,15 +312,15 @@ class SmartActuator:
             beyond its range; the actuator is then as before.
 
         """
-        expected = TIME_BYTES + self.saved.nbytes + self.tuning.nbytes
+        expected = TIME_BYTES + self._saved.nbytes + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
-        found = self.saved.read(snapshot, TIME_BYTES)
-        self.tuning.restore(snapshot[TIME_BYTES + self.saved.nbytes:])
+        found = self._saved.read(snapshot, TIME_BYTES)
+        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
         self.t_ns = t_ns
-        self.saved.restore(found)
+        self._saved.restore(found)
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:

@@ -1,6 +1,6 @@
 """The rows of an actuator's memory that are its state, as the bytes of a snapshot."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from isa_ros.actuator.link import refuse_states
 from isa_ros.actuator.rows import Memory
@@ -35,11 +35,6 @@ class SavedRows:
             self._rows += [getattr(memory, name) for name in _SAVED_OF_LINK]
         self.nbytes = sum(rows.nbytes for rows in self._rows)
         """Size of a snapshot."""
-
-    @property
-    def rows(self) -> Iterator[tuple[str, Records]]:
-        """Yield the rows with their names, in the order of a snapshot."""
-        return zip(self._names, self._rows)
 
     def clear(self) -> None:
         """Set the whole state to zero."""

@@ -143,9 +143,7 @@ class Coordinator:
                 break
             while not self._is_due():
                 pass
-            self._refuse_stop()
-            self._loop.advance()
-            self._progress.update(self.t_ns)
+            self._tick()
 
     def emergency_stop(self, is_open: bool) -> None:
         """Open or close the lines of all emergency stops; raises as `EmergencyStops.request`."""
@@ -184,9 +182,14 @@ class Coordinator:
 
     def _advance(self) -> None:
         """Advance by one tick; without a pace before it by quiet ones, for a moment."""
-        self._refuse_stop()
         if self._pace.factor == 0.0:
+            self._refuse_stop()
             self._quiet.advance(self._loop, math.inf if self._n_ticks is None else self._n_ticks)
+        self._tick()
+
+    def _tick(self) -> None:
+        """Advance by one tick."""
+        self._refuse_stop()
         self._loop.advance()
         self._progress.update(self.t_ns)
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.core.bound import Bound, nothing, Part
+from isa_ros.core.bound import Bound, nothing, Part, Rebound
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records
@@ -64,6 +64,7 @@ class _Column:
         self._source: NDArray[np.float64] = floats(source).reshape(-1)
         self.rows: Records = np.zeros((n, *shape), source.dtype)
         self._floats = floats(self.rows)
+        self._keeping = Rebound(keep, lambda clock, rows: _Kept(clock, self._source, rows))
 
     def take(self, tick: int) -> None:
         """Copy the source of a sample."""
@@ -75,7 +76,7 @@ class _Column:
 
     def keeping(self, clock: NDArray[np.int64]) -> Bound:
         """Return what copies the source of a quiet tick, for which there is a row."""
-        return Bound(keep, _Kept(clock, self._source, self._floats))
+        return self._keeping.to(clock, self._floats)
 
 
 class LogSink(RowSink):

@@ -40,14 +40,6 @@ def made(own: SupplyCircuit, step_ns: int, samples: np.ndarray) -> Supply | Circ
     return Supply(own.sheet, step_ns, own.flow_slope, samples, own.name, own.rows)
 
 
-def index_of(rows: Sequence[int]) -> slice | np.ndarray:
-    """Return the index of rows: where they follow each other a slice, ten times as fast."""
-    first = rows[0] if rows else 0
-    if list(rows) == list(range(first, first + len(rows))):
-        return slice(first, first + len(rows))
-    return np.array(rows, np.int64)
-
-
 def summed(values: Sequence[float], rows: Sequence[int]) -> float:
     """Return the sum in the order of the rows; `sum` of Python 3.12 rounds differently."""
     total = 0.0

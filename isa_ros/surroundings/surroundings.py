@@ -19,8 +19,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
-from isa_ros.surroundings.feeding import (
-    index_of, made, n_samples, summed, SupplyCircuit)
+from isa_ros.surroundings.feeding import made, n_samples, summed, SupplyCircuit
 from isa_ros.surroundings.supply import saved_states, Supply, SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import SupplyPorts
 from isa_ros.surroundings.supply_tick import Answers, keep_answers
@@ -89,7 +88,6 @@ class Surroundings:
         """All that may change during a run, by SUPPLY.KEY or BODY.KEY, and the lines of groups."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
-        self._fed = [index_of(circuit.rows) for circuit in circuits]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
@@ -140,10 +138,11 @@ class Surroundings:
         return self._ports.are_there
 
     def _fill_pressures(self, rows: Records) -> None:
-        for supply, fed in zip(self._supplies, self._fed):
+        for supply, circuit in zip(self._supplies, self.circuits):
             if isinstance(supply, Circuit):
                 supply.fill(rows)
                 continue
+            fed = list(circuit.rows)
             rows['supply_pressure'][fed] = supply.pressure
             rows['return_pressure'][fed] = supply.return_pressure
 
@@ -224,8 +223,10 @@ class Surroundings:
                     replies, self._ports.answers if has_moved else _NO_ANSWERS).run()
                 continue
             groups = circuit.groups
-            oil = ([summed(replies['supply_volume'].tolist(), rows) for rows in groups],
-                   [summed(replies['return_volume'].tolist(), rows) for rows in groups])
+            drawn, returned = (
+                replies[name].tolist() for name in ('supply_volume', 'return_volume'))
+            oil = ([summed(drawn, rows) for rows in groups],
+                   [summed(returned, rows) for rows in groups])
             paid = [summed(energies, rows) for rows in groups] if energies else []
             if paid:
                 supply.advance_nodes(oil[0], paid, oil[1])

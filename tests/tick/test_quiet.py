@@ -123,9 +123,7 @@ def test_a_log_has_the_same_rows_also_where_it_grows():
 
 def test_a_trip_is_told_once():
     """One that was told before a call does not end it."""
-    simulation = load('rig_linear').simulation()
-    simulation.loop.sinks = (Counting(1000),)
-    simulation.loop.begin()
+    simulation, _ = begun(load('rig_linear'))
     for _ in range(3):
         simulation.loop.advance()
     assert simulation.loop._quiet is not None
@@ -163,6 +161,14 @@ class Counting(RowSink):
         self.quiet += n_ticks
 
 
+def begun(run: Run) -> tuple[Simulation, Counting]:
+    """Return a simulation at t = 0, and the sink of its rows."""
+    simulation, sink = run.simulation(), Counting(1000)
+    simulation.loop.sinks = (sink,)
+    simulation.loop.begin()
+    return simulation, sink
+
+
 def counted(n: int, n_ticks: int = 60, **scenario: object) -> Counting:
     simulation = load('rig_linear', **scenario).simulation()
     sink = Counting(n)
@@ -185,10 +191,7 @@ def test_a_device_that_changes_is_taken_at_its_tick():
 
 def test_a_state_that_breaks_in_a_call_has_its_time():
     """The actuators have passed the tick; what follows them has not."""
-    simulation = load('leg', scenario='drop').simulation()
-    sink = Counting(1000)
-    simulation.loop.sinks = (sink,)
-    simulation.loop.begin()
+    simulation, sink = begun(load('leg', scenario='drop'))
     for _ in range(5):
         simulation.loop.advance()
     simulation.loop.advance_quietly(40)
@@ -204,9 +207,7 @@ def test_a_state_that_breaks_in_a_call_has_its_time():
 
 def test_a_body_that_ends_the_run_does_so_in_a_call():
     """As in a single tick: its own time has passed, and the supplies wait."""
-    simulation = load('leg', scenario='drop').simulation()
-    simulation.loop.sinks = (Counting(1000),)
-    simulation.loop.begin()
+    simulation, _ = begun(load('leg', scenario='drop'))
     simulation.loop.advance()
     leg = simulation.surroundings.bodies['body']
     leg._state['v_z'] = np.inf
@@ -237,9 +238,7 @@ def test_a_scenario_has_commands_at_its_events_and_during_a_motion():
 
 
 def test_an_open_line_of_an_emergency_stop_is_followed_tick_by_tick():
-    simulation = load('quadruped').simulation()
-    simulation.loop.sinks = (Counting(1000),)
-    simulation.loop.begin()
+    simulation, _ = begun(load('quadruped'))
     for _ in range(3):
         simulation.loop.advance()
     simulation.loop.advance_quietly(6)
@@ -315,10 +314,7 @@ def test_a_tick_is_watched_for_what_actuators_do(seconds, field, value, is_seen)
 @pytest.mark.parametrize('link', [{'kind': 'none'}, {'kind': 'can', 'cycle_ms': 4.0}])
 def test_a_command_from_outside_is_taken_at_its_tick(link):
     """Behind a link it is sent at once, and applied when its frame has arrived."""
-    simulation = load('rig_linear').replace({'link': link}).simulation()
-    sink = Counting(1000)
-    simulation.loop.sinks = (sink,)
-    simulation.loop.begin()
+    simulation, sink = begun(load('rig_linear').replace({'link': link}))
     for _ in range(30):
         simulation.loop.advance()
     simulation.loop.advance_quietly(41)
@@ -334,9 +330,7 @@ def test_a_command_from_outside_is_taken_at_its_tick(link):
 
 
 def test_nothing_is_quiet_while_something_waits():
-    simulation = load('leg', scenario='drop').simulation()
-    simulation.loop.sinks = (Counting(1000),)
-    simulation.loop.begin()
+    simulation, _ = begun(load('leg', scenario='drop'))
     simulation.loop.advance()
     simulation.loop.advance()
 
