@@ -1,6 +1,7 @@
-"""The only source of the package's metadata; package.xml repeats the version for ROS."""
+"""The only source of the package's metadata but its version: isa_ros/core/version.py."""
 
 from pathlib import Path
+import re
 
 from setuptools import find_packages, setup
 
@@ -14,9 +15,17 @@ def shared(directory: str, pattern: str) -> tuple[str, list[str]]:
     return f'share/{NAME}/{directory}', [str(path.relative_to(ROOT)) for path in files]
 
 
+def version() -> str:
+    """Return the version, without importing what may not be installed yet."""
+    text = (ROOT / NAME / 'core' / 'version.py').read_text(encoding='utf-8')
+    found = re.search(r"^VERSION = '(.+)'$", text, re.MULTILINE)
+    assert found is not None
+    return found[1]
+
+
 setup(
     name=NAME,
-    version='0.1.0',
+    version=version(),
     description='Hydraulic integrated smart actuators as ROS 2 nodes stepped in lockstep',
     long_description=(ROOT / 'README.md').read_text(encoding='utf-8')
     if (ROOT / 'README.md').exists() else '',

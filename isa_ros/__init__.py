@@ -13,6 +13,8 @@ nor ROS.
 from importlib import import_module
 from typing import Any, TYPE_CHECKING
 
+from isa_ros.core.version import VERSION
+
 if TYPE_CHECKING:
     from isa_ros.actuator.group import ActuatorGroup as ActuatorGroup
     from isa_ros.analysis.signals.recorded_result import read as read
@@ -34,7 +36,8 @@ if TYPE_CHECKING:
     from isa_ros.surroundings.mechanism import Mounting as Mounting
     from isa_ros.surroundings.mechanism_body import MechanismBody as MechanismBody
     from isa_ros.tick.trips import TripWarning as TripWarning
-    __version__: str
+
+__version__ = VERSION
 
 _HOMES = {
     'ActuatorGroup': 'actuator.group', 'Actuators': 'scripting.actuators',
@@ -55,9 +58,6 @@ __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
 
 def __getattr__(name: str) -> Any:
     """Load a public name where it is used first."""
-    if name == '__version__':
-        from isa_ros.bag.provenance import own_version
-        return own_version()
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     return getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)

@@ -7,11 +7,10 @@ It has no data of the host: no wall time, path, user, process mode or number of 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 import hashlib
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
+from importlib.metadata import version
 import platform
-from xml.etree import ElementTree
 
+from isa_ros.core.version import VERSION as OWN_VERSION
 from isa_ros.errors import BagError
 
 CONFIGURATION = 'configuration.yaml'
@@ -109,7 +108,7 @@ def installed_versions() -> dict[str, str]:
     """
     versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
     python = without_patch(platform.python_version())
-    return {'isa_ros': own_version(), PYTHON: python, **versions}
+    return {'isa_ros': OWN_VERSION, PYTHON: python, **versions}
 
 
 def versions_of(record: Mapping[str, str]) -> dict[str, str]:
@@ -131,21 +130,6 @@ def have_comparable_kernels(versions: Mapping[str, str], others: Mapping[str, st
 def without_patch(version_: str) -> str:
     """Return major and minor release of a version."""
     return '.'.join(version_.split('.')[:2])
-
-
-def own_version() -> str:
-    """Return the installed version, or that of the source tree if none is installed."""
-    try:
-        return version('isa_ros')
-    except PackageNotFoundError:
-        manifest = Path(__file__).parents[2] / 'package.xml'
-    try:
-        text = ElementTree.parse(manifest).findtext('version')
-    except OSError:
-        text = None
-    if not text:
-        raise BagError(f'{manifest}: the version of isa_ros is neither installed nor declared')
-    return text
 
 
 def _sha256(data: bytes) -> str:

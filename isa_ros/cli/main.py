@@ -13,11 +13,11 @@ import signal
 from types import FrameType
 from typing import NoReturn
 
-import isa_ros
 from isa_ros.cli import (
     bus_commands, commands, response_arguments, run_arguments, shared_arguments)
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
+from isa_ros.core.version import VERSION
 from isa_ros.processes.ending import (
     ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
 
@@ -36,14 +36,6 @@ class _Parser(argparse.ArgumentParser):
             near = alternatives(chosen['given'], _NAME.findall(chosen['valid']))
             message = f'argument {chosen["of"]}: invalid choice: {chosen["given"]!r}; {near}'
         self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
-
-
-class _Version(argparse.Action):
-    """Print the version and end; the version is read only then."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        print(f'isa_ros {isa_ros.__version__}')
-        parser.exit(DONE)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -86,7 +78,8 @@ def make_parser() -> argparse.ArgumentParser:
         prog='isa', parents=[common],
         description='Hydraulic integrated smart actuators, simulated in lockstep.')
     parser.add_argument(
-        '--version', action=_Version, nargs=0, help='show the version of isa_ros and end')
+        '--version', action='version', version=f'isa_ros {VERSION}',
+        help='show the version of isa_ros and end')
     subparsers = parser.add_subparsers(metavar='COMMAND', required=True)
     for name, (add_arguments, command, summary) in _COMMANDS.items():
         below = subparsers.add_parser(name, parents=[common], help=summary, description=summary)

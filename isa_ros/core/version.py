@@ -1,0 +1,4 @@
+"""The version of isa_ros: the one place that setup.py, bags and `isa --version` take it from."""
+
+VERSION = '0.1.0'
+"""That of the last release in CHANGELOG.rst; package.xml repeats it for ROS."""
