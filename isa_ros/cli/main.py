@@ -14,7 +14,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
-    bus_commands, commands, response_arguments, run_arguments, shared_arguments)
+    bus_commands, commands, host_commands, response_arguments, run_arguments, shared_arguments)
+from isa_ros.cli.completion.scripts import SHELLS
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.version import VERSION
@@ -204,6 +205,12 @@ def _faults(parser: argparse.ArgumentParser) -> None:
     shared_arguments.page_directory(parser, 'device_faults.md, or fault_situations.md')
 
 
+def _completion(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('shell', metavar='SHELL', choices=SHELLS, help=', '.join(SHELLS))
+    parser.epilog = (
+        'bash, zsh: source <(isa completion bash); fish: isa completion fish | source')
+
+
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
@@ -240,5 +247,7 @@ _COMMANDS = {
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,
                  'compare the actuators with the numbers of the paper'),
+    'completion': (_completion, host_commands.completion,
+                   'print the script that completes isa in a shell'),
     'bench': (_bench, commands.bench, 'measure the speed of simulations on this machine'),
 }
