@@ -1,0 +1,1 @@
+"""Actuators for programs without Python: a library of C, and an FMU."""
