@@ -205,6 +205,11 @@ def _faults(parser: argparse.ArgumentParser) -> None:
     shared_arguments.page_directory(parser, 'device_faults.md, or fault_situations.md')
 
 
+def _doctor(parser: argparse.ArgumentParser) -> None:
+    shared_arguments.json_file(parser, 'what was found')
+    parser.epilog = 'Exits with 1 if something keeps runs from working.'
+
+
 def _completion(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('shell', metavar='SHELL', choices=SHELLS, help=', '.join(SHELLS))
     parser.epilog = (
@@ -247,6 +252,8 @@ _COMMANDS = {
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,
                  'compare the actuators with the numbers of the paper'),
+    'doctor': (_doctor, host_commands.doctor,
+               'show what is installed, which middleware and which limits this host has'),
     'completion': (_completion, host_commands.completion,
                    'print the script that completes isa in a shell'),
     'bench': (_bench, commands.bench, 'measure the speed of simulations on this machine'),

@@ -59,7 +59,7 @@ def set_defaults(
         return
     profile = NETWORK_PROFILE
     if _is_for_this_host(environment):
-        if (middleware or get_rmw_implementation_identifier()).startswith(_FAST_DDS):
+        if (middleware or middleware_name()).startswith(_FAST_DDS):
             # For LOCALHOST the middleware adds transports to those of a profile: UDP that
             # listens on every interface, and shared memory that remains after a SIGKILL.
             environment[_RANGE] = 'SYSTEM_DEFAULT'
@@ -83,6 +83,12 @@ def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[Non
                 environment[name] = before[name]
             else:
                 environment.pop(name, None)
+
+
+def middleware_name() -> str:
+    """Return the name of the middleware that rclpy uses."""
+    name: str = get_rmw_implementation_identifier()
+    return name
 
 
 def finds_other_hosts(environment: Mapping[str, str]) -> bool:

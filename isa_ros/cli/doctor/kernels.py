@@ -1,0 +1,35 @@
+"""The compiled kernels: where they are kept, how many there are, and the compilers."""
+
+from collections.abc import Iterator
+from pathlib import Path
+import shutil
+
+from isa_ros.cli.doctor.finding import Finding, Verdict
+from isa_ros.cli.doctor.limits import in_megabytes
+
+C_COMPILER = 'cc'
+_GROUP = 'kernels'
+
+
+def kernels() -> Iterator[Finding]:
+    """Yield the state of the cache and of the compiler of C."""
+    from isa_ros.core.kernel_cache import CACHE
+    yield kept_in(CACHE)
+    found = shutil.which(C_COMPILER)
+    yield Finding(_GROUP, C_COMPILER, found) if found else Finding(
+        _GROUP, C_COMPILER, 'missing', Verdict.NOTE,
+        'only for libraries of kernels: apt install gcc')
+
+
+def kept_in(directory: Path | None) -> Finding:
+    """Return the number of kernels in a cache, and their size."""
+    if directory is None:
+        return Finding(
+            _GROUP, 'cache', 'no directory that can be written', Verdict.PROBLEM,
+            'every start compiles for a minute or more: set NUMBA_CACHE_DIR to one of your own')
+    files = [path.stat().st_size for path in directory.iterdir() if path.is_file()]
+    if not files:
+        return Finding(_GROUP, 'cache', f'{directory}, empty', Verdict.NOTE,
+                       'the first run compiles its kernels, once')
+    return Finding(
+        _GROUP, 'cache', f'{directory}, {len(files)} kernels, {in_megabytes(sum(files))}')
