@@ -2,7 +2,7 @@
 
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.core.kernel_cache import CACHE
+from isa_ros.core.kernel_directory import CACHE
 from isa_ros.run.warm_up import warmed_up
 from tests.locks import locked
 

@@ -1,12 +1,12 @@
 """The tick of the actuators of one process, bound to their memory."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.core.bound import Bound
-from isa_ros.core.kernel import entry_of, kernel
-from isa_ros.core.pointers import kind_of
+from isa_ros.core.kernel import Entry, entry_of, kernel
+from isa_ros.core.kinds import kind_of
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 import numpy as np
 
@@ -48,6 +48,6 @@ def bound_tick(own: Ticked) -> Bound:
     return Bound(group_tick, own)
 
 
-def tick_kernel() -> Any:
-    """Return the kernel of the tick as it is compiled and kept."""
+def tick_kernel() -> Entry:
+    """Return the tick as it is compiled and kept."""
     return entry_of(group_tick, kind_of(ticked(memory_of(1), 1)))

@@ -12,8 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 import ctypes
 from typing import Any, NamedTuple
 
-from isa_ros.core.kernel import address_of, entry_of, IS_COMPILED, kernel
-from isa_ros.core.pointers import call_at, kind_of
+from isa_ros.core.kernel import entry_of, IS_COMPILED, kernel
+from isa_ros.core.kinds import kind_of
+from isa_ros.core.pointers import call_at
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,7 +60,7 @@ class Bound:
         self.address = 0
         """Of the machine code; 0 without the compiler."""
         if IS_COMPILED:
-            self.address = address_of(entry_of(function, kind_of(memory)))
+            self.address = entry_of(function, kind_of(memory)).address()
             called, table = _CALLED(self.address), ctypes.c_void_p(self.table.ctypes.data)
             self.run: Callable[[], int] = lambda: called(table)
         else:
@@ -75,21 +76,31 @@ def _with_attributes(memory: Any) -> Any:
     return type(memory)(*parts)
 
 
+class Rounds(NamedTuple):
+    """Memory of a program."""
+
+    numbers: NDArray[np.int64]
+    """Rounds to run, and what they return as `Program.run`, (4,)."""
+    parts: NDArray[np.int64]
+    """Address and table of each bound kernel, (n, 2)."""
+
+
 @kernel
-def run_rounds(rounds, program):
+def run_rounds(own):
     """
     Run the bound kernels of a program one after the other, in so many rounds.
 
-    ``program`` has address and table of each, (n, 2). One that returns another number than 0 is
-    the last. Return the rounds that were finished, the place of that kernel or -1, and its
-    number.
+    One that returns another number than 0 is the last. Write the rounds that were finished, the
+    place of that kernel or -1, and its number.
     """
-    for done in range(rounds):
-        for k in range(len(program)):
-            found = call_at(program[k, 0], program[k, 1])
+    for done in range(own.numbers[0]):
+        for k in range(len(own.parts)):
+            found = call_at(own.parts[k, 0], own.parts[k, 1])
             if found != 0:
-                return done, k, found
-    return rounds, -1, 0
+                own.numbers[1], own.numbers[2], own.numbers[3] = done, k, found
+                return 1
+    own.numbers[1], own.numbers[2], own.numbers[3] = own.numbers[0], -1, 0
+    return 0
 
 
 class Program:
@@ -97,14 +108,23 @@ class Program:
 
     def __init__(self, parts: Sequence[Bound]) -> None:
         self.parts = tuple(parts)
-        self._program = np.array(
-            [(part.address, part.table.ctypes.data) for part in parts], np.int64).reshape(-1, 2)
+        if IS_COMPILED:
+            self._rounds = Rounds(np.zeros(4, np.int64), np.array(
+                [(part.address, part.table.ctypes.data) for part in parts],
+                np.int64).reshape(-1, 2))
+            self._bound = Bound(run_rounds, self._rounds)
 
     def run(self, rounds: int) -> tuple[int, int, int]:
-        """Run so many rounds; a kernel that finds something ends them, as in `run_rounds`."""
+        """
+        Run so many rounds; a kernel that returns another number than 0 ends them.
+
+        Return the rounds that were finished, the place of that kernel or -1, and its number.
+        """
         if IS_COMPILED:
-            done, place, found = run_rounds(rounds, self._program)
-            return int(done), int(place), int(found)
+            self._rounds.numbers[0] = rounds
+            self._bound.run()
+            done, place, found = self._rounds.numbers[1:].tolist()
+            return done, place, found
         for done in range(rounds):
             for place, part in enumerate(self.parts):
                 found = part.run()

@@ -1,26 +1,88 @@
-"""The decorators of what this package compiles."""
+"""
+The decorators of what this package compiles.
+
+Importing a kernel takes no compiler: its machine code is looked up at the first call, in the
+libraries of kernels (`kernel_library`), and only a kernel that none of them has is compiled.
+"""
 
 from collections.abc import Callable
-from functools import cache
-from typing import Any, TypeVar
+from functools import cached_property, update_wrapper
+import os
+from typing import Any, NamedTuple, TypeVar
 
-from isa_ros.core.kernel_cache import CACHE, cache_of
-from isa_ros.core.pointers import memory_at, TABLE
-import numba
-from numba import types
-from numba.core.registry import cpu_target
+from isa_ros.core.kernel_directory import CACHE, is_kept
+from isa_ros.core.kernel_library import address_in_library, Call, symbol_of
+from isa_ros.core.kinds import Kind, kind_of, TupleKind, UnknownKind
 
 _Function = TypeVar('_Function', bound=Callable[..., Any])
 
 # No fastmath: it reorders roundings, and replay compares bytes. No parallel: it may do so, and
 # threads over rows are not faster (docs/architecture.md). Functions that a kernel calls are
 # inlined: a call costs as much as an equation, and inlining keeps every bit.
-_OPTIONS: dict[str, Any] = {'nogil': True, 'error_model': 'numpy', 'forceinline': True}
+OPTIONS: dict[str, Any] = {
+    'nogil': True, 'error_model': 'numpy', 'forceinline': True, 'nopython': True,
+    'boundscheck': None}
+"""What numba compiles kernels with."""
+
+IS_COMPILED = os.environ.get('NUMBA_DISABLE_JIT', '0') in ('', '0')
+"""Whether kernels are machine code, and not the functions themselves."""
+
+BEFORE_COMPILING: list[Callable[[], object]] = []
+"""What is called once, when the first kernel is to be compiled."""
+
+
+class Kernel:
+    """
+    A function that is machine code once it is called.
+
+    Other kernels that call it have it inlined. It has the attributes of its ``compiled`` form.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        self.py_func, self.targetoptions = function, options
+        self.directory = CACHE
+        """Where the compiler keeps it."""
+        self._calls: dict[Any, Call] = {}
+        self._call: Callable[..., Any] = self._from_library
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Run the machine code."""
+        return self._call(*arguments, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the compiled form has."""
+        if name.startswith('__'):
+            raise AttributeError(name)
+        return getattr(self.compiled, name)
+
+    @cached_property
+    def compiled(self) -> Any:
+        """The kernel as the compiler has it."""
+        from isa_ros.core.compiler import dispatcher_of
+        return dispatcher_of(self)
+
+    def _from_library(self, *arguments: Any, **named: Any) -> Any:
+        """Run what a library has for such arguments; once none has it, it is always compiled."""
+        try:
+            kinds = tuple(map(kind_of, arguments))
+            call = self._calls.get(kinds) or self._found(kinds)
+        except UnknownKind:
+            call = None
+        if named or call is None:
+            self._call = self.compiled
+            return self.compiled(*arguments, **named)
+        return call(arguments)
+
+    def _found(self, kinds: tuple[Kind, ...]) -> Call | None:
+        entry = Entry(self, TupleKind(tuple, kinds), is_called=True)
+        address = address_in_library(lambda: entry.symbol)
+        return self._calls.setdefault(kinds, Call(address)) if address else None
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function for each combination of argument types, and keep that on disk."""
-    return _kept(numba.njit(**_OPTIONS)(function))
+    return Kernel(function, OPTIONS) if IS_COMPILED else function
 
 
 def part_of_kernel(function: Callable[..., Any]) -> Any:
@@ -30,55 +92,48 @@ def part_of_kernel(function: Callable[..., Any]) -> Any:
     The compiler optimises all that a kernel calls once for itself and once more for each kernel
     above it. Where the whole tick is in three kernels, one in the other, that doubles the time.
     """
-    return _kept(numba.njit(inline='always', **_OPTIONS)(function))
-
-
-def _kept(compiled: Any) -> Any:
-    if hasattr(compiled, 'py_func'):    # with NUMBA_DISABLE_JIT it is the function
-        compiled._cache = cache_of(compiled, CACHE)
-    return compiled
+    return Kernel(function, {'inline': 'always', **OPTIONS}) if IS_COMPILED else function
 
 
 def kernel_function(function: _Function) -> _Function:
     """Return a function that Python calls as it is, and kernels as the kernel made of it."""
-    compiled = kernel(function)
-    if compiled is not function:
-        setattr(function, 'kernel', compiled)   # numba's type refers to it weakly
-        cpu_target.typing_context.insert_global(function, types.Dispatcher(compiled))
+    if IS_COMPILED:
+        setattr(function, 'kernel', kernel(function))   # numba's type refers to it weakly
     return function
 
 
-IS_COMPILED = not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
-"""Whether kernels are machine code, and not the functions themselves."""
+class Entry(NamedTuple):
+    """A kernel over words, ``int64_t f(const int64_t *table)`` in C: without Python around it."""
+
+    kernel: Any
+    kind: Kind
+    """Of its memory; of the tuple of its arguments where it is ``called``."""
+    is_called: bool = False
+    """Words of what it returns are put in front of those of the arguments."""
+
+    @property
+    def symbol(self) -> str:
+        """Its name in a library."""
+        return symbol_of(self.kernel, 'called' if self.is_called else 'bound', self.kind)
+
+    @property
+    def compiled(self) -> Any:
+        """The entry as the compiler has it."""
+        from isa_ros.core.compiler import bound_entry, called_entry
+        return (called_entry if self.is_called else bound_entry)(self.kernel, self.kind)
+
+    def is_kept(self) -> bool:
+        """Return whether it need not be compiled."""
+        return bool(address_in_library(lambda: self.symbol)) or is_kept(self.compiled)
+
+    def address(self) -> int:
+        """Return the address of the machine code; it is loaded, or compiled if need be."""
+        def compiled() -> int:
+            from isa_ros.core.compiler import address_of
+            return address_of(self)
+        return address_in_library(lambda: self.symbol) or compiled()
 
 
-@cache
-def entry_of(function: Any, kind: Any) -> Any:
-    """
-    Return a kernel over a memory of a ``kind`` as one over the `TABLE` of its arrays.
-
-    It is compiled by `address_of`, and then has the signature ``int64_t f(const int64_t *table)``
-    of C.
-    """
-    memory = memory_at(kind)
-
-    def entry(table: Any) -> Any:
-        return function(memory(table))
-    entry.__qualname__ = function.__qualname__
-    entry.__module__ = function.__module__
-    return _kept(numba.njit(**_OPTIONS)(entry))
-
-
-def compiled_entry(entry: Any) -> Any:
-    """Return the compiled version of an entry; it is compiled or loaded if need be."""
-    entry.compile((TABLE,))
-    made, = entry.overloads.values()
-    return made
-
-
-@cache
-def address_of(entry: Any) -> int:
-    """Return the address of an entry's machine code; it is compiled or loaded if need be."""
-    made = compiled_entry(entry)
-    address: int = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)
-    return address
+def entry_of(function: Any, kind: Kind) -> Entry:
+    """Return a kernel over a memory of a kind as an entry."""
+    return Entry(function, kind)

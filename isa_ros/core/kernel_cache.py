@@ -12,76 +12,36 @@ same kernel write the same. numba's own cache does not notice an edit in another
 kernels by the path of their source.
 """
 
-from collections.abc import Iterator
 import contextlib
 from functools import cache
 import hashlib
 import os
 from pathlib import Path
 import pickle
-import stat
 import sys
 import tempfile
 import time
 from typing import Any
 
-from isa_ros.core.kernel_key import (
-    environment, is_unchanged, kernel_digest, type_text, UnknownValue)
+from isa_ros.core.kernel_directory import digest_text, READ
+from isa_ros.core.kernel_key import is_unchanged, type_text, UnknownValue
+import llvmlite
 from llvmlite.binding import parse_bitcode
+import numba
 from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
+import numpy as np
 
 _FORM = 2                   # of a file; others are not read
 _NOTED_AFTER = 600.0        # s; a use that soon after the one before is not noted
 _KEPT_TIME = 30 * 86400.0   # s, since a kernel was last loaded
 _KEPT_BYTES = 512 << 20     # about thirty times the kernels of this package
 _DIGEST_BYTES = 16
-
-
-def _candidates() -> Iterator[Path]:
-    """Yield the directories that may hold the caches of all versions, the preferred one first."""
-    for variable in ('NUMBA_CACHE_DIR', 'XDG_CACHE_HOME'):
-        if os.environ.get(variable):
-            yield Path(os.environ[variable]).absolute() / 'isa_ros'
-    with contextlib.suppress(RuntimeError):  # no HOME, and a user without an entry in passwd
-        yield Path.home() / '.cache' / 'isa_ros'
-    with contextlib.suppress(FileNotFoundError):  # no temporary directory either
-        yield Path(tempfile.gettempdir()) / f'isa_ros-{os.geteuid()}'
-
-
-def _is_trusted(directory: Path) -> bool:
-    """Return whether nobody else may put code there that is run."""
-    try:
-        found = directory.stat()
-    except OSError:
-        return False
-    return found.st_uid in (0, os.geteuid()) and not found.st_mode & stat.S_IWOTH
-
-
-def _is_own(directory: Path) -> bool:
-    """Return whether a directory can be written, and is trusted; it is made if need be."""
-    with contextlib.suppress(OSError):
-        directory.mkdir(mode=0o700, parents=True, exist_ok=True)
-    return _is_trusted(directory) and os.access(directory, os.W_OK | os.X_OK)
-
-
-def cache_directories() -> tuple[Path | None, tuple[Path, ...]]:
-    """Return the directory to write to, None if there is none, and all to read from."""
-    readable: list[Path] = []
-    for directory in _candidates():
-        place = directory / 'kernels'
-        if _is_own(directory) and _is_own(place):
-            return place, (*readable, place)
-        if _is_trusted(directory) and _is_trusted(place):
-            readable.append(place)
-    return None, tuple(readable)
-
-
-CACHE, _READ = cache_directories()
-"""The directory of kernels; None: those that no readable one holds are compiled every time."""
+_SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
+             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
 
 
 @cache
@@ -92,9 +52,12 @@ def _say_not_kept(reason: str) -> None:
 
 
 @cache
-def _environment() -> str:
-    """Return the compiler's versions, read once."""
-    return environment()
+def environment() -> str:
+    """Return what all kernels depend on, besides the processor: versions and numba's settings."""
+    settings: Any = numba.config
+    return repr((sys.implementation.cache_tag, sys.version_info[:2], numba.__version__,
+                 llvmlite.__version__, np.__version__.split('.')[:2],
+                 [str(getattr(settings, name, None)) for name in _SETTINGS]))
 
 
 def _check(name: str, body: bytes | memoryview) -> bytes:
@@ -149,16 +112,6 @@ def _sweep(directory: Path) -> None:
         if used < oldest or total > _KEPT_BYTES:
             with contextlib.suppress(OSError):
                 path.unlink()
-
-
-def is_kept(kernel: Any) -> bool:
-    """Return whether a kernel as it is now is kept, for whatever types of arguments."""
-    return any(True for place in _READ for _ in place.glob(f'*-{_digest(kernel)}'))
-
-
-def _digest(kernel: Any) -> str:
-    """Return the digest of a kernel as names of files have it."""
-    return kernel_digest(kernel).hex()[:32]
 
 
 class _Library(JITCodeLibrary):
@@ -229,12 +182,12 @@ class KernelCache(_Cache):
     def _name(self, sig: Any, codegen: Any) -> str:
         """Return the name of the file for a combination of argument types."""
         types = ','.join(map(type_text, getattr(sig, 'args', sig)))
-        asked = f'{_FORM} {_environment()} {codegen.magic_tuple()} {types}'
+        asked = f'{_FORM} {environment()} {codegen.magic_tuple()} {types}'
         function = self._kernel.py_func
         name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
         return (f'{name.replace("<", "").replace(">", "")}-'
                 f'{hashlib.sha256(asked.encode()).hexdigest()[:16]}-'
-                f'{_digest(self._kernel)}')
+                f'{digest_text(self._kernel)}')
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """
@@ -274,7 +227,7 @@ class KernelCache(_Cache):
             _say_not_kept(error.strerror or str(error))
 
 
-def cache_of(kernel: Any, directory: Path | None, read: tuple[Path, ...] = _READ) -> KernelCache:
+def cache_of(kernel: Any, directory: Path | None, read: tuple[Path, ...] = READ) -> KernelCache:
     """Return the cache of a kernel in a directory."""
     if directory is not None and directory not in read:
         read = (directory,)

@@ -16,11 +16,6 @@ import sys
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-import llvmlite
-import numba
-from numba import types
-from numba.core.dispatcher import Dispatcher
-from numba.core.extending import _Intrinsic
 import numpy as np
 
 # What is left out of bytecode: places for the interpreter's notes, and what -OO leaves of asserts.
@@ -34,30 +29,28 @@ _FLAGGED = {_LOAD_GLOBAL: sys.version_info >= (3, 11),
 _HAS_DOCSTRING = 0x4000000      # a flag of code, of Python 3.13 and later
 _BY_NAME = frozenset(('builtins', 'llvmlite', 'math', 'numba', 'numpy', 'operator'))
 """Packages of which a name says all: their versions are part of `environment`."""
-_SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
-             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
-
-
-_CALLED = (Dispatcher, _Intrinsic, FunctionType, BuiltinFunctionType, np.ufunc)
+_CALLED = (FunctionType, BuiltinFunctionType, np.ufunc)
 
 
 class UnknownValue(Exception):
     """A kernel names a value of a type of which it is not known what the compiler reads."""
 
 
-def environment() -> str:
-    """Return what all kernels depend on, besides the processor: versions and numba's settings."""
-    settings: Any = numba.config
-    return repr((sys.implementation.cache_tag, sys.version_info[:2], numba.__version__,
-                 llvmlite.__version__, np.__version__.split('.')[:2],
-                 [str(getattr(settings, name, None)) for name in _SETTINGS]))
+def _of_compiler(module: str, name: str) -> Any:
+    """Return a class of numba; while that is not loaded no value is of it, nor of ()."""
+    return getattr(sys.modules.get(module), name, ())
+
+
+def is_kernel(value: Any) -> bool:
+    """Return whether a value is a kernel, of this package or of numba itself."""
+    return not isinstance(value, type) and hasattr(value, 'py_func')
 
 
 def _function_of(value: Any) -> Any:
     """Return the Python function of a kernel or function whose code matters, None for others."""
-    if isinstance(value, Dispatcher):
+    if is_kernel(value):
         return value.py_func
-    if isinstance(value, _Intrinsic):
+    if hasattr(value, '_defn'):     # of the compiler
         return value._defn
     is_own = isinstance(value, FunctionType) and _package(value) not in _BY_NAME
     return value if is_own else None
@@ -69,18 +62,18 @@ def _package(function: Any) -> str:
     return package
 
 
-def _dtype_text(dtype: np.dtype[Any]) -> str:
+def dtype_text(dtype: np.dtype[Any]) -> str:
     """Return all of a dtype that the compiler reads."""
     if dtype.subdtype:
-        return f'{_dtype_text(dtype.subdtype[0])}{dtype.subdtype[1]}'
+        return f'{dtype_text(dtype.subdtype[0])}{dtype.subdtype[1]}'
     if dtype.fields is None:
         return dtype.str
-    fields = ','.join(f'{name}:{dtype.fields[name][1]}:{_dtype_text(dtype.fields[name][0])}'
+    fields = ','.join(f'{name}:{dtype.fields[name][1]}:{dtype_text(dtype.fields[name][0])}'
                       for name in dtype.names or ())
     return f'{{{fields};{dtype.itemsize};{dtype.alignment};{dtype.isalignedstruct}}}'
 
 
-def _class_text(kind: type) -> str:
+def class_text(kind: type) -> str:
     """Return a class: its name, the fields of a tuple, the values of an enumeration."""
     if isinstance(kind, EnumMeta):
         members: dict[str, Any] = dict(kind.__members__)
@@ -108,23 +101,24 @@ def value_text(value: Any) -> str:
     if value is None or kind in (bool, int, float, complex, str, bytes):
         return f'{kind.__name__} {value!r}'
     if isinstance(value, tuple):
-        return f'{_class_text(kind)}({",".join(map(value_text, value))})'
+        return f'{class_text(kind)}({",".join(map(value_text, value))})'
     if isinstance(value, frozenset):
-        return f'{_class_text(kind)}({",".join(sorted(map(value_text, value)))})'
+        return f'{class_text(kind)}({",".join(sorted(map(value_text, value)))})'
     if isinstance(value, np.generic | np.ndarray):
-        return f'{_dtype_text(value.dtype)} {value.shape} {value.strides} {value.tobytes().hex()}'
+        return f'{dtype_text(value.dtype)} {value.shape} {value.strides} {value.tobytes().hex()}'
     if isinstance(value, np.dtype):
-        return f'dtype {_dtype_text(value)}'
+        return f'dtype {dtype_text(value)}'
     if isinstance(kind, EnumMeta):
-        return f'{_class_text(kind)}.{value.name}'
+        return f'{class_text(kind)}.{value.name}'
     if isinstance(value, CodeType):
         return f'code {_code_text(value)}'
     if isinstance(value, type):
-        return _class_text(value)
-    if isinstance(value, types.Type):
+        return class_text(value)
+    if isinstance(value, _of_compiler('numba.core.types', 'Type')):
         return type_text(value)
-    if isinstance(value, _CALLED):
-        function: Any = _function_of(value) or value
+    function: Any = _function_of(value)
+    if function is not None or isinstance(value, _CALLED):
+        function = function or value
         return (f'function {getattr(function, "__module__", "")}.'
                 f'{getattr(function, "__qualname__", function.__name__)}')
     if isinstance(value, ModuleType):
@@ -133,10 +127,11 @@ def value_text(value: Any) -> str:
 
 
 def type_text(kind: Any) -> str:
-    """Return the type of an argument; the names of most of numba's types say all."""
+    """Return numba's type of an argument; the names of most of them say all."""
+    from numba import types     # a value of its types has loaded it
     inner: Any = kind
     if isinstance(kind, types.BaseNamedTuple):
-        return f'{_class_text(inner.instance_class)}({",".join(map(type_text, inner.types))})'
+        return f'{class_text(inner.instance_class)}({",".join(map(type_text, inner.types))})'
     if isinstance(kind, types.BaseTuple):
         return f'({",".join(map(type_text, inner.types))})'
     if isinstance(kind, types.Dispatcher | types.Function | types.Callable):
@@ -243,8 +238,7 @@ def _reached(
         value = waiting.pop()
         function = _function_of(value)
         if function not in reached:
-            is_kernel = isinstance(value, Dispatcher)
-            options = repr(sorted(value.targetoptions.items())) if is_kernel else ''
+            options = repr(sorted(value.targetoptions.items())) if is_kernel(value) else ''
             text, calls = read(function, options)
             reached[function] = _Reached(value, text)
             waiting += reversed(calls)
@@ -268,7 +262,7 @@ def kernels_of(*kernels: Any) -> list[Any]:
 
     """
     return [own.value for own in _reached(kernels, _read_once).values()
-            if isinstance(own.value, Dispatcher)]
+            if is_kernel(own.value)]
 
 
 def digest_of(kernels: Iterable[Any]) -> bytes:

@@ -14,8 +14,9 @@ import subprocess
 import tempfile
 from typing import Any, NamedTuple
 
+from isa_ros.core.compiler import compiled_entry
 from isa_ros.core.elf import undefined_symbols
-from isa_ros.core.kernel import compiled_entry
+from isa_ros.core.kernel import Entry
 from isa_ros.core.object_runtime import RUNTIME
 from isa_ros.errors import ConfigError
 import llvmlite.binding as llvm
@@ -57,9 +58,9 @@ def own_target() -> Target:
     raise ConfigError(f'processor {architecture}: no target, valid: {", ".join(TARGETS)}')
 
 
-def object_of(entries: Mapping[str, Any], target: Target) -> bytes:
+def object_of(entries: Mapping[str, Entry], target: Target) -> bytes:
     """
-    Return the object file (ELF) of entries, `isa_ros.core.kernel.entry_of`, by exported names.
+    Return the object file (ELF) of entries by exported names.
 
     Each has the C signature ``int64_t name(const int64_t *table)``; all else is internal. Entries
     that are neither compiled nor kept are compiled, and so kept.
@@ -107,7 +108,7 @@ def _machine(target: Target) -> Any:
         cpu=target.cpu, opt=3, reloc='pic', codemodel='default')
 
 
-def _module_of(name: str, entry: Any) -> Any:
+def _module_of(name: str, entry: Entry) -> Any:
     """Return a copy of an entry's module, in which only the entry, renamed, is seen outside."""
     made = compiled_entry(entry)
     module = made.library._get_module_for_linking().clone()

@@ -1,20 +1,20 @@
 """Report the compilation of kernels, which takes minutes after an installation or an edit."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, ExitStack
 import sys
 import time
 from typing import Any, TextIO
 
-from isa_ros.core.kernel_cache import is_kept
+from isa_ros.core.kernel import BEFORE_COMPILING
+from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of, UnknownValue
 from isa_ros.text.progress import terminal_line
-from numba.core.event import Event, install_listener, Listener
 
 SILENT_S = 2.0  # a shorter compilation, of single small kernels, is not reported
 
 
-class CompilationReport(Listener):
+class CompilationReport:
     """
     Prints one line when kernels have been compiled for `SILENT_S`; counts them on a terminal.
 
@@ -31,12 +31,11 @@ class CompilationReport(Listener):
         self._total: int | None = None
         self._depth = self._finished = 0
 
-    def on_start(self, event: Event) -> None:
+    def start(self, kernel: Any) -> None:
         """Announce the compilation if it has lasted; show what is compiled next."""
         now = self._clock()
         if self._began is None:
             self._began = now
-        kernel = event.data['dispatcher']
         if not self._depth:
             self._outermost = kernel
         self._depth += 1
@@ -56,7 +55,7 @@ class CompilationReport(Listener):
                 f'compiling kernels, {self._finished} of {max(self._total, self._finished + 1)}, '
                 f'{spent:.0f} s: {kernel.__name__}')
 
-    def on_end(self, event: Event) -> None:
+    def end(self) -> None:
         """Count a kernel; clear the terminal's line when the outermost one is finished."""
         self._depth -= 1
         self._finished += 1
@@ -69,7 +68,7 @@ def _of_tick() -> Sequence[Any]:
     module = sys.modules.get('isa_ros.actuator.ticking')
     if module is None:
         return []
-    tick = module.tick_kernel()
+    tick = module.tick_kernel().compiled
     return [] if tick.overloads or is_kept(tick) else [tick]
 
 
@@ -88,6 +87,30 @@ def reported_compilation(
         who: str, stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic) -> Iterator[None]:
     """Report compilations within the context on ``stream``, None: standard error."""
-    with install_listener(
-            'numba:compile', CompilationReport(who, stream or sys.stderr, clock)):
-        yield
+    report = CompilationReport(who, stream or sys.stderr, clock)
+    with ExitStack() as stack:
+        def watch() -> None:
+            stack.enter_context(_reported_to(report))
+        if 'numba' in sys.modules:
+            watch()
+        else:       # not before a kernel is compiled: loading it takes longer than a start
+            BEFORE_COMPILING.append(watch)
+        try:
+            yield
+        finally:
+            if watch in BEFORE_COMPILING:
+                BEFORE_COMPILING.remove(watch)
+
+
+def _reported_to(report: CompilationReport) -> AbstractContextManager[object]:
+    """Return a context in which the compiler tells a report what it does."""
+    from numba.core.event import Event, install_listener, Listener
+
+    class Compilations(Listener):
+        def on_start(self, event: Event) -> None:
+            report.start(event.data['dispatcher'])
+
+        def on_end(self, event: Event) -> None:
+            report.end()
+    context: AbstractContextManager[object] = install_listener('numba:compile', Compilations())
+    return context

@@ -8,11 +8,10 @@ from types import MappingProxyType
 from typing import Any
 
 from isa_ros.bag.provenance import installed_versions, KERNELS, Provenance
-from isa_ros.core.kernel_key import digest_of
+from isa_ros.core import kernel
+from isa_ros.core.kernel_key import digest_of, is_kernel
 from isa_ros.core.saved_state import RunState
 from isa_ros.scenario.scenario import Scenario
-import numba
-from numba.core.dispatcher import Dispatcher
 
 _OF_TICK = ('actuator', 'loads', 'plant', 'reu', 'surroundings')
 _PACKING = ('run.link_packing', 'run.pack_kernel')
@@ -36,8 +35,7 @@ def provenance_of(
 
 def recorded_versions() -> dict[str, str]:
     """Return the versions that a bag names: of packages, and of the kernels if compiled."""
-    settings: Any = numba.config
-    return installed_versions() | ({} if settings.DISABLE_JIT else {KERNELS: tick_digest()})
+    return installed_versions() | ({KERNELS: tick_digest()} if kernel.IS_COMPILED else {})
 
 
 @cache
@@ -59,5 +57,5 @@ def _kernels() -> Iterator[Any]:
         names += [module.name for module in walk_packages(found.__path__, f'{found.__name__}.')]
     for name in sorted(names):
         for _, value in sorted(vars(import_module(name)).items()):
-            if isinstance(value, Dispatcher) and value.py_func.__module__ == name:
+            if is_kernel(value) and value.py_func.__module__ == name:
                 yield value

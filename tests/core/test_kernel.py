@@ -7,7 +7,6 @@ from typing import Any
 from isa_ros.core import kernel as kernels
 from isa_ros.core import kernel_cache
 from isa_ros.core.kernel import kernel, part_of_kernel
-import numba
 import pytest
 
 
@@ -68,7 +67,7 @@ def test_a_numba_that_cannot_load_what_it_kept_is_one_line(make, monkeypatch, ca
 
 
 def test_without_compiling_a_kernel_is_the_function(monkeypatch):
-    monkeypatch.setattr(numba.config, 'DISABLE_JIT', True)
+    monkeypatch.setattr(kernels, 'IS_COMPILED', False)
     assert kernel(twice) is twice
 
 

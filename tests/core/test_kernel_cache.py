@@ -10,8 +10,8 @@ import time
 
 import isa_ros
 from isa_ros.core import kernel as kernels
-from isa_ros.core import kernel_cache
-from isa_ros.core.kernel_cache import cache_directories, is_kept
+from isa_ros.core import kernel_cache, kernel_directory
+from isa_ros.core.kernel_directory import cache_directories, is_kept
 import numba
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def twice(x):
     return {factor} * x
 """
 MAIN = (
-    'from isa_ros.caller import caller; import numba; '
+    'import numba; from isa_ros.caller import caller; '
     'print(caller(1.0), numba.config.CACHE_DIR)')
 LOADED = (
     'import sys; from isa_ros.callee import twice; '
@@ -152,7 +152,7 @@ def test_a_directory_that_can_only_be_read_is_read(
     monkeypatch.setenv('NUMBA_CACHE_DIR', str(first.parent))
     monkeypatch.setenv('XDG_CACHE_HOME', str(second.parent))
     monkeypatch.setattr(
-        kernel_cache.os, 'access', lambda path, mode: first not in (path, path.parent))
+        kernel_directory.os, 'access', lambda path, mode: first not in (path, path.parent))
     assert cache_directories() == (
         second / 'kernels', (first / 'kernels', second / 'kernels'))
 
@@ -165,7 +165,7 @@ def test_only_the_user_and_root_are_trusted(owner: int, mode: int, expected: boo
         def stat(self) -> os.stat_result:
             return os.stat_result((0o40000 | mode, 0, 0, 0, owner, 0, 0, 0, 0, 0))
 
-    assert kernel_cache._is_trusted(Directory()) is expected  # type: ignore[arg-type]
+    assert kernel_directory._is_trusted(Directory()) is expected  # type: ignore[arg-type]
 
 
 def filled(directory: Path, sizes_and_days: Mapping[str, tuple[int, float]]) -> None:
@@ -216,7 +216,7 @@ def test_other_processors_and_versions_are_other_files(monkeypatch: pytest.Monke
     types = (numba.int64,)
     first = cache._name(types, Codegen('skylake'))
     assert first != cache._name(types, Codegen('zen4'))
-    monkeypatch.setattr(kernel_cache, '_environment', lambda: 'numba 99')
+    monkeypatch.setattr(kernel_cache, 'environment', lambda: 'numba 99')
     assert first != cache._name(types, Codegen('skylake'))
 
 
@@ -238,7 +238,7 @@ def test_an_array_that_stays_outside_the_code_is_not_kept(
 def test_a_kernel_is_kept_once_it_is_compiled(
         monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(kernels, 'CACHE', tmp_path)
-    monkeypatch.setattr(kernel_cache, '_READ', (tmp_path,))
+    monkeypatch.setattr(kernel_directory, 'READ', (tmp_path,))
     one, other = kernels.kernel(twice), kernels.kernel(first_of)
     assert not is_kept(one)
     one(3)

@@ -8,9 +8,9 @@ import subprocess
 from isa_ros.core.bound import Bound, table_of
 from isa_ros.core.elf import Symbol, symbols, undefined_symbols
 from isa_ros.core.kernel import entry_of, kernel
+from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import (
     assembled, library_of, object_of, own_target, Target, TARGETS)
-from isa_ros.core.pointers import kind_of
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest

@@ -4,7 +4,7 @@ import io
 
 from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.config.assembly import group_of
-from isa_ros.core.kernel_cache import is_kept
+from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run import compiling
@@ -108,9 +108,10 @@ def test_the_total_is_of_what_is_not_compiled_yet():
 def test_kernels_that_are_kept_are_not_counted():
     """The tick of the actuators has been compiled by other tests, or is now."""
     group_of(load('rig_linear').configuration).advance(np.zeros(1, LOAD_PORT))
-    kept = [own for own in kernels_of(tick_kernel()) if is_kept(own)]
-    assert len(kernels_of(tick_kernel())) > 50
-    assert to_compile(tick_kernel()) <= max(1, len(kernels_of(tick_kernel())) - len(kept))
+    tick = tick_kernel().compiled
+    kept = [own for own in kernels_of(tick) if is_kept(own)]
+    assert len(kernels_of(tick)) > 50
+    assert to_compile(tick) <= max(1, len(kernels_of(tick)) - len(kept))
 
 
 def test_a_tick_that_is_neither_loaded_nor_kept_is_in_the_total(monkeypatch):
@@ -118,10 +119,11 @@ def test_a_tick_that_is_neither_loaded_nor_kept_is_in_the_total(monkeypatch):
     monkeypatch.undo()
     assert compiling._of_tick() == []       # another test has compiled it
     monkeypatch.setattr(compiling, 'is_kept', lambda kernel: False)
-    before = [own for own in kernels_of(tick_kernel()) if not own.overloads]
-    assert compiling._of_tick() == ([] if tick_kernel().overloads else [tick_kernel()])
+    tick = tick_kernel().compiled
+    before = [own for own in kernels_of(tick) if not own.overloads]
+    assert compiling._of_tick() == ([] if tick.overloads else [tick])
     said = io.StringIO()
-    monkeypatch.setattr(compiling, '_of_tick', lambda: [tick_kernel()])
+    monkeypatch.setattr(compiling, '_of_tick', lambda: [tick])
     with reported_compilation('isa', said, Clock(SILENT_S)):
         kernels()(1.0)
     assert f'the simulation, {len(before) + 2} kernels, once' in said.getvalue()

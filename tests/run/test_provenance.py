@@ -6,12 +6,11 @@ import re
 from isa_ros.bag.provenance import KERNELS, VERSION
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.core import kernel_key
+from isa_ros.core import kernel, kernel_key
 from isa_ros.core.kernel_key import digest_of, kernel_digest
 from isa_ros.run import provenance
 from isa_ros.run.provenance import provenance_of, recorded_versions, tick_digest
 from isa_ros.scenario.scenario import idle
-import numba
 import pytest
 
 KERNELS_OF_TICK = list(provenance._kernels())
@@ -64,5 +63,5 @@ def test_the_digest_of_the_tick_is_among_the_versions_of_a_bag():
 
 def test_without_compiling_there_is_no_digest(monkeypatch):
     """Kernels are plain functions then, and not found by their type."""
-    monkeypatch.setattr(numba.config, 'DISABLE_JIT', True)
+    monkeypatch.setattr(kernel, 'IS_COMPILED', False)
     assert KERNELS not in recorded_versions()

@@ -11,6 +11,7 @@ import sys
 import isa_ros
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.core.kernel import Entry
 from isa_ros.run import warm_up
 import pytest
 
@@ -27,7 +28,7 @@ with install_recorder('numba:compile') as compiled:
         warmed_up(load_run(path))
 from isa_ros.actuator.ticking import tick_kernel
 print(isa_ros.__file__, [event.data['dispatcher'].__name__ for _, event in compiled.buffer],
-      bool(tick_kernel().stats.cache_hits))
+      bool(tick_kernel().compiled.stats.cache_hits))
 print([name for name in ('numba.np.arraymath', 'scipy.linalg') if name in sys.modules])
 """
 
@@ -42,7 +43,7 @@ def note(self, function, memory):
 Bound.__init__ = note
 compile_surroundings()
 from isa_ros.actuator.ticking import tick_kernel
-print(tick_kernel().signatures, *sorted(made))
+print(tick_kernel().compiled.signatures, *sorted(made))
 """
 
 
@@ -87,7 +88,7 @@ def test_a_first_start_compiles_by_two_processes(
     """If the other one fails, this one compiles all."""
     began = []
     with monkeypatch.context() as patch:
-        patch.setattr(warm_up, 'is_kept', lambda kernel: False)
+        patch.setattr(Entry, 'is_kept', lambda entry: False)
         patch.setattr(warm_up.os, 'sched_getaffinity', lambda _: {0, 1})
         if other is not None:
             patch.setattr(warm_up, '_OTHER', [sys.executable, '-c', other])
@@ -108,7 +109,7 @@ def test_a_first_start_compiles_by_two_processes(
 @pytest.mark.parametrize('why', ['kept', 'one core', 'no body'])
 def test_another_process_starts_only_if_it_helps(
         monkeypatch: pytest.MonkeyPatch, why: str) -> None:
-    monkeypatch.setattr(warm_up, 'is_kept', lambda kernel: why == 'kept')
+    monkeypatch.setattr(Entry, 'is_kept', lambda entry: why == 'kept')
     monkeypatch.setattr(
         warm_up.os, 'sched_getaffinity', lambda _: {0} if why == 'one core' else {0, 1})
     monkeypatch.setattr(warm_up, '_compile_by_two', lambda _: pytest.fail('a process started'))

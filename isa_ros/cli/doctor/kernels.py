@@ -13,7 +13,7 @@ _GROUP = 'kernels'
 
 def kernels() -> Iterator[Finding]:
     """Yield the state of the cache and of the compiler of C."""
-    from isa_ros.core.kernel_cache import CACHE
+    from isa_ros.core.kernel_directory import CACHE
     yield kept_in(CACHE)
     found = shutil.which(C_COMPILER)
     yield Finding(_GROUP, C_COMPILER, found) if found else Finding(
