@@ -14,7 +14,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
-    bus_commands, commands, host_commands, response_arguments, run_arguments, shared_arguments)
+    bus_commands, commands, host_commands, response_arguments, run_arguments, shared_arguments,
+    talk)
 from isa_ros.cli.completion.scripts import SHELLS
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
@@ -252,6 +253,10 @@ _COMMANDS = {
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,
                  'compare the actuators with the numbers of the paper'),
+    'echo': (talk.echo_arguments, talk.echo, 'print the messages of a topic'),
+    'set': (talk.set_arguments, talk.set_values, 'set or show parameters of a running node'),
+    'command': (talk.command_arguments, talk.command,
+                'send a setpoint or a request to a running actuator'),
     'doctor': (_doctor, host_commands.doctor,
                'show what is installed, which middleware and which limits this host has'),
     'completion': (_completion, host_commands.completion,

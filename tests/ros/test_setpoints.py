@@ -147,13 +147,19 @@ def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
         command = shlex.split(text[text.index('ros2 topic pub'):])
         assert command[:6] == [
             'ros2', 'topic', 'pub', '--once', '/cmd', 'sensor_msgs/msg/JointState']
-        assert ' on /lab/states; to move it: ' in text
+        assert ' on /lab/states; to move it: ros2' in text    # isa command knows no remaps
         message = JointState(**yaml.safe_load(command[6]))
         assert node.actuator.setpoint_range.admit(msg_to_command(message, 'knee')) == ''
         assert message.position[0] != pytest.approx(
             node.actuator.memory.observed[0]['position'], rel=0.1)
     finally:
         node.destroy_node()
+
+
+def test_a_lone_actuator_prints_the_command_for_those_without_ros2(knee):
+    """With its namespace; a tenth of the stroke beside the position at the start."""
+    text = ready_text(knee(), 2.0)
+    assert '; to move it: isa command knee 0.06, or ros2 topic pub --once /knee/setpoint' in text
 
 
 @pytest.mark.parametrize(('beyond', 'message', 'in_force'), [

@@ -82,13 +82,17 @@ def ready_text(node: ActuatorNode, real_time_factor: float) -> str:
     """Return what runs, on which topics, and a command that moves it, in one line."""
     config = node.setup.config
     name = config.name
-    states, setpoint = map(node.resolve_topic_name, ('~/joint_states', '~/setpoint'))
+    states, *commanded = map(
+        node.resolve_topic_name, ('~/joint_states', '~/setpoint', '~/applied_setpoint'))
     stroke, unit = config.sheet.plant.drive.stroke, 'rad' if config.sheet.is_rotary else 'm'
     position = float(node.actuator.memory.observed[0]['position'])
     target = position + (EXAMPLE if position < 0.5 * stroke else -EXAMPLE) * stroke
     pace = f'{real_time_factor:g} times real time' if real_time_factor else 'maximum speed'
+    path = node.get_fully_qualified_name()
+    is_remapped = commanded != [f'{path}/setpoint', f'{path}/applied_setpoint']
+    own = '' if is_remapped else f'isa command {path[1:]} {target:.4g}, or '
     text = (f'ready at {pace}: position {position:.4g} of 0 to {stroke:.4g} {unit} on '
-            f'{states}; to move it: ros2 topic pub --once '
-            f"{setpoint} sensor_msgs/msg/JointState '{{name: [{name}], position: "
+            f'{states}; to move it: {own}ros2 topic pub --once '
+            f"{commanded[0]} sensor_msgs/msg/JointState '{{name: [{name}], position: "
             f"[{target:.4g}]}}'")
     return f'{text}; discovery is off, so that only this process can' if is_off() else text

@@ -1,0 +1,105 @@
+"""Read and set ROS parameters of a node: gains and limits of an actuator."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError, one_line, RunError
+from isa_ros.nodes.middleware.refusals import refusals
+from isa_ros.nodes.terminal.visitor import absolute, not_found, visiting, Visitor
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParametersAtomically
+from rclpy.parameter import Parameter, parameter_value_to_python
+import yaml
+
+
+class Change(NamedTuple):
+    """A parameter to set, or to read without a text."""
+
+    name: str
+    text: str | None
+
+
+def change_of(text: str) -> Change:
+    """Return what KEY=VALUE or KEY asks for."""
+    name, sign, value = text.partition('=')
+    return Change(name, value if sign else None)
+
+
+def set_parameters(node: str, changes: Sequence[Change], timeout_s: float,
+                   print_line: Callable[[str], None]) -> None:
+    """
+    Set all changes with a value at once, and print each parameter with its values.
+
+    Raises
+    ------
+    ConfigError
+        The node has no such parameter, or refuses a value; then none is set.
+    RunError
+        The node did not appear, or did not answer, within the timeout.
+
+    """
+    path = absolute(node)
+    with visiting(timeout_s) as visitor:
+        before = _values(visitor, path, changes)
+        wanted = [_parameter(change) for change in changes if change.text is not None]
+        if wanted:
+            result = _asked(visitor, path, 'set_parameters_atomically', SetParametersAtomically,
+                            SetParametersAtomically.Request(
+                                parameters=[each.to_parameter_msg() for each in wanted])).result
+            if not result.successful:
+                raise ConfigError(f'{path}: {one_line(result.reason)}')
+        after = _values(visitor, path, changes) if wanted else before
+    for change, old, new in zip(changes, before, after, strict=True):
+        print_line(f'{change.name}: {new}' if change.text is None
+                   else f'{change.name}: {old} -> {new}')
+
+
+def _parameter(change: Change) -> Parameter:
+    try:
+        value = yaml.safe_load(change.text or '')
+        return Parameter(change.name, value=_number(value))
+    except (yaml.YAMLError, TypeError, AttributeError):
+        raise ConfigError(f'{change.name} = {change.text}: not a value of a parameter') from None
+
+
+def _number(value: Any) -> Any:
+    """Return a value of YAML, where 2e-5 without a point is a text, as Python reads it."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+def _values(visitor: Visitor, path: str, changes: Sequence[Change]) -> list[Any]:
+    names = [change.name for change in changes]
+    found = _asked(visitor, path, 'get_parameters', GetParameters,
+                   GetParameters.Request(names=names)).values
+    if len(found) != len(names):    # rclpy leaves all out if one is unknown
+        known = _asked(visitor, path, 'list_parameters', ListParameters,
+                       ListParameters.Request()).result.names
+        for name in names:
+            if name not in known:
+                raise ConfigError(
+                    f'{path}: parameter {name} is unknown; {alternatives(name, known)}')
+    return [parameter_value_to_python(value) for value in found]
+
+
+def _asked(visitor: Visitor, path: str, service: str, kind: Any, request: Any) -> Any:
+    """Return the answer of a node's service."""
+    with refusals():
+        client = visitor.node.create_client(kind, f'{path}/{service}')
+    if not visitor.wait(client.service_is_ready):
+        raise not_found('node', path, _nodes(visitor), visitor.seconds)
+    future = client.call_async(request)
+    if not visitor.wait(future.done):
+        raise RunError(f'node {path}: no answer within {visitor.seconds}')
+    visitor.node.destroy_client(client)
+    return future.result()
+
+
+def _nodes(visitor: Visitor) -> list[str]:
+    return [f'{place.rstrip("/")}/{name}'
+            for name, place in visitor.node.get_node_names_and_namespaces()
+            if name != visitor.node.get_name()]
