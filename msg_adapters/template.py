@@ -132,11 +132,57 @@ def _offset(
     return slot.offset
 
 
+class NumberLayout(NamedTuple):
+    """Where messages of one layout have their numbers, and the bytes that all of them share."""
+
+    record: np.dtype[np.void]
+    """A field per path of a number, of the size of a message."""
+    is_fixed: NDArray[np.bool_]
+    """Of each byte, (size,): whether it is in no number."""
+    fixed: NDArray[np.uint8]
+    """The bytes that are in no number: texts, lengths of arrays, padding."""
+
+    @classmethod
+    def of(cls, first: bytes, message: type[Message]) -> 'NumberLayout | None':
+        """
+        Return the layout of a message; None if it has bytes that are in no field.
+
+        Raises
+        ------
+        CdrError
+            It is not a message of this class.
+
+        """
+        encoded, slots = encode_with_slots(decode(first, message))
+        if encoded != first:
+            return None
+        record = np.dtype({
+            'names': list(slots),
+            'formats': [f'<{slot.code}' for slot in slots.values()],
+            'offsets': [slot.offset for slot in slots.values()],
+            'itemsize': len(first)})
+        is_fixed: NDArray[np.bool_] = np.ones(len(first), bool)
+        for name, slot in slots.items():
+            is_fixed[slot.offset:slot.offset + record[name].itemsize] = False
+        return cls(record, is_fixed, np.frombuffer(first, np.uint8)[is_fixed])
+
+    def numbers(self, messages: NDArray[np.uint8]) -> NDArray[np.void] | None:
+        """
+        Return the numbers of messages, bytes (n, size), as a structured view, (n,).
+
+        None if they differ from the first one in anything else.
+        """
+        if messages.shape[1] != self.record.itemsize:
+            return None
+        is_equal = (messages[:, self.is_fixed] == self.fixed).all()
+        return messages.view(self.record)[:, 0] if is_equal else None
+
+
 def number_columns(messages: Sequence[bytes], cls: type[Message]) -> NDArray[np.void] | None:
     """
     Return the numbers of messages as a structured array with a field per path, (n,).
 
-    None if the messages differ in anything else: texts, lengths of arrays, padding.
+    None if the messages differ in anything else.
 
     Raises
     ------
@@ -145,17 +191,7 @@ def number_columns(messages: Sequence[bytes], cls: type[Message]) -> NDArray[np.
 
     """
     first = messages[0]
-    encoded, slots = encode_with_slots(decode(first, cls))
-    if encoded != first or any(len(message) != len(first) for message in messages):
+    layout = NumberLayout.of(first, cls)
+    if layout is None or any(len(message) != len(first) for message in messages):
         return None
-    record = np.dtype({
-        'names': list(slots),
-        'formats': [f'<{slot.code}' for slot in slots.values()],
-        'offsets': [slot.offset for slot in slots.values()],
-        'itemsize': len(first)})
-    numbers = np.frombuffer(b''.join(messages), record)
-    fixed: NDArray[np.bool_] = np.ones(len(first), bool)
-    for name, slot in slots.items():
-        fixed[slot.offset:slot.offset + record[name].itemsize] = False
-    rest = numbers.view(np.uint8).reshape(len(messages), len(first))[:, fixed]
-    return numbers if np.array_equal(rest, np.broadcast_to(rest[0], rest.shape)) else None
+    return layout.numbers(np.frombuffer(b''.join(messages), np.uint8).reshape(-1, len(first)))

@@ -7,18 +7,21 @@ complete chunk, which the writer ends with a whole tick. metadata.yaml is for ot
 is not used here.
 """
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Container, Iterator
 from operator import attrgetter
 from pathlib import Path
 import re
 from typing import NamedTuple
 
+from isa_ros.bag.message_table import MessageTable
 from isa_ros.bag.metadata import has_custom
 from isa_ros.bag.part_reader import BagMessage, PartReader
 from isa_ros.bag.part_writer import ROSBAG2, SERIALIZED
 from isa_ros.bag.provenance import Provenance, RECORD
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
+import numpy as np
 
 __all__ = ['Bag', 'BagMessage', 'Tick']
 
@@ -63,7 +66,8 @@ class Bag:
         filled = [part for part in self.parts if part.n_messages]
         self.types = dict(first.types)
         self.type_hashes = dict(first.type_hashes)
-        self.n_messages = sum(part.n_messages for part in filled)
+        self.counts = sum((part.counts for part in filled), Counter[str]())
+        self.n_messages = self.counts.total()
         self.start_ns = filled[0].start_ns if filled else None
         self.end_ns = filled[-1].end_ns if filled else None
         self.is_whole = last.is_whole and not last.continues
@@ -106,10 +110,20 @@ class Bag:
         """Return the label of a single file of a split bag, None for a whole bag."""
         return self.parts[0].number
 
-    def messages(self) -> Iterator[BagMessage]:
-        """Yield every message in order of time."""
+    def messages(self, topics: Container[str] | None = None) -> Iterator[BagMessage]:
+        """Yield every message, or those of some topics, in order of time."""
         for part in self.parts:
-            yield from part.messages()
+            yield from part.messages(topics)
+
+    def columns(self, topics: Container[str]) -> Iterator[tuple[str, MessageTable]]:
+        """Yield the messages of some topics, chunk by chunk, those of a topic together."""
+        for part in self.parts:
+            own = {number: channel.topic for number, channel in part.channels.items()
+                   if channel.topic in topics}
+            for table in part.tables(topics):
+                for number in np.unique(table.channels).tolist():
+                    if number in own:
+                        yield own[number], table.of(number)
 
     def place_of(self, message: BagMessage) -> str:
         """Return where a message of the bag is, for errors: its number, topic and tick."""

@@ -163,6 +163,24 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
     return parsed
 
 
+def record_at(file: BinaryIO, offset: int, where: str) -> McapRecord | None:
+    """
+    Return the parsed form of the record at an offset, None for one that is not needed.
+
+    Raises
+    ------
+    BagError
+        The file ends before it does, or it is malformed.
+
+    """
+    file.seek(offset)
+    head = file.read(_HEAD_BYTES)
+    length = int.from_bytes(head[1:], 'little')
+    if len(head) < _HEAD_BYTES or length > MAX_RECORD_BYTES:
+        raise BagError(f'{where}: is not the record that it was')
+    return parse_record(head[0], file.read(length), where)
+
+
 class _Reader:
     """Position in one file, and the running checksum of the bytes read."""
 

@@ -55,7 +55,9 @@ def history_of(bag: Bag, run: RunConfig) -> History:
     now = np.zeros(len(names), SAMPLE)
     rows: list[np.ndarray] = []
     ticks: list[int] = []
-    for message in bag.messages():
+    read = {*topics.devices, *topics.parameters, *topics.cushions, diagnostics.TOPIC[0],
+            OF_SUPPLIES[0]}
+    for message in bag.messages(read):
         try:
             is_new = _read(message, topics, names, now)
             row = topics.parameters.get(message.topic)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
@@ -83,6 +83,6 @@ def test_a_recorded_gain_that_cannot_be_is_refused(tuned, tmp_path, capsys):
 
 def test_what_was_tuned_is_no_signal_to_be_drawn(tuned):
     """Its messages change their layout."""
-    _, traces = read_traces(tuned)
-    assert TOPIC not in traces
-    assert len(traces['/kfe/references'].t) == N_TICKS + 1
+    signals = read_signals(tuned)
+    assert len(signals.over_time('kfe.force_reference').t) == N_TICKS + 1
+    assert not any('parameters' in name for name in signals)

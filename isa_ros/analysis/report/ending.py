@@ -21,10 +21,10 @@ def ending(bag: Bag) -> str:
 
     """
     diagnosed = None
-    for message in bag.messages():
+    for message in bag.messages((diagnostics.TOPIC[0], event.TOPIC[0])):
         if message.topic == diagnostics.TOPIC[0]:
             diagnosed = message.t_ns
-        elif message.topic == event.TOPIC[0]:
+        else:
             try:
                 text = event.text(message.data)
             except CdrError as error:

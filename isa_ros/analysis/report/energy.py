@@ -47,9 +47,8 @@ def recorded_accounts(bag: Bag) -> Accounts | None:
 
     """
     last = None
-    for message in bag.messages():
-        if message.topic == diagnostics.TOPIC[0]:
-            last = message
+    for message in bag.messages(diagnostics.TOPIC[:1]):
+        last = message
     if last is None:
         return None
     try:

@@ -47,8 +47,8 @@ def read(bag: str | Path) -> Result:
         Its configuration does not even name its actuators.
 
     """
-    path = Path(bag)
-    signals, opened = read_signals(path, needs_values=False), Bag(path)
+    path, opened = Path(bag), Bag(Path(bag))
+    signals = read_signals(opened, needs_values=False)
     run = signals.run
     ticks = np.rint(signals.time * (NS_PER_SECOND / run.step_ns)).astype(np.int64)
     log = _empty(run, int(ticks[-1]) + 1)
@@ -115,7 +115,7 @@ def _messages(bag: Bag, run: RunConfig, log: Log) -> Iterator[tuple[int, int, np
     topics = {f'/{own.name}/{APPLIED_SETPOINT[0]}': k for k, own in enumerate(run.actuators)}
     names = [own.name for own in run.actuators]
     supplies = [own.name for own in run.sampled_supplies]
-    for message in bag.messages():
+    for message in bag.messages({*topics, diagnostics.TOPIC[0]}):
         tick, topic = message.sequence, message.topic
         try:
             if topic in topics:

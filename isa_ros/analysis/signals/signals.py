@@ -4,11 +4,14 @@ The signals of a run by name, whether it was simulated in memory or is read from
 Names, units and gauge pressures are those of `isa_ros.scripting.result.Result`: rotor.force.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
+from isa_ros.analysis.signals.traces import Column, read_traces, seconds
+from isa_ros.bag.provenance import CONFIGURATION
+from isa_ros.bag.reader import Bag
+from isa_ros.config.recorded_run import recorded_run
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.fields import units_of
@@ -43,6 +46,7 @@ AT_EVERY_TICK = tuple(
 _SUPPLY = {'pressure': 'fluid_pressure', 'return_pressure': 'fluid_pressure',
            'gas_temperature': 'temperature'}
 """Field of the message by field of a `SUPPLY_SAMPLE`."""
+_CLOCK = '/clock'
 
 
 class Signal(NamedTuple):
@@ -129,56 +133,57 @@ def signals_of(result: Result) -> Signals:
         run, {name: Signal(time, result[name]) for name in result}, time, result.scenario.name)
 
 
-def read_signals(bag: Path, *, needs_values: bool = True) -> Signals:
+def read_signals(bag: Bag | Path, *, needs_values: bool = True) -> Signals:
     """
     Return the signals of a bag; without ``needs_values`` also where only names can be read.
 
     Raises
     ------
     BagError
-        As `read_traces`, or the bag has no samples.
+        It is no bag, is damaged, or has no samples; the messages of a topic change their layout.
     ConfigError
         Another version wrote the configuration, and its values are needed.
 
     """
-    (run, problem), traces = read_traces(bag)
+    bag = bag if isinstance(bag, Bag) else Bag(bag)
+    run, problem = recorded_run(
+        bag.provenance.configuration, f'{bag.path}: {CONFIGURATION}')
     if problem and needs_values:
         raise ConfigError(problem)
-    if '/clock' not in traces:
-        raise BagError(f'{bag}: has no samples, or /clock, which has their time, was left out')
-    return Signals(run, dict(_named(run, traces)), traces['/clock'].t, str(bag), problem)
+    if not bag.counts[_CLOCK]:
+        raise BagError(
+            f'{bag.path}: has no samples, or {_CLOCK}, which has their time, was left out')
+    traces = read_traces(bag, _topics(run))
+    clock = traces[_CLOCK].times
+    time = seconds(clock - run.start_ns)
+    found: dict[str, Signal] = {}
+    for trace in traces.values():
+        t = (time if np.array_equal(trace.times, clock)
+             else seconds(trace.times - run.start_ns))
+        found |= {name: Signal(t, values) for name, values in trace.values.items()}
+    return Signals(run, found, time, str(bag.path), problem)
 
 
-def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, Signal]]:
-    """Yield the signals whose topics are in a bag."""
+def _topics(run: RunConfig) -> dict[str, list[Column]]:
+    """Return the topics of the signals of a run with their columns."""
+    found: dict[str, list[Column]] = {_CLOCK: []}
     for actuator in run.actuators:
         for name, (suffix, path) in _ACTUATOR.items():
-            trace = traces.get(f'/{actuator.name}/{suffix}')
-            if trace is not None and trace.has([path]):
-                yield f'{actuator.name}.{name}', _signal(trace, path)
+            found.setdefault(f'/{actuator.name}/{suffix}', []).append(
+                _single(f'{actuator.name}.{name}', path))
     for supply in run.sampled_supplies:
         for name, path in _SUPPLY.items():
-            trace = traces.get(supply_topic(supply.name, name))
-            if trace is not None:
-                yield f'{supply.name}.{name}', _signal(trace, path)
+            found.setdefault(supply_topic(supply.name, name), []).append(
+                _single(f'{supply.name}.{name}', path))
     for body in run.bodies:
         fields = {field.name: field for field in body.fields}
         for message in body.messages(run.step_ns):
-            trace = traces.get(message.topic)
-            if trace is not None:
-                for name, paths in by_field(message):
-                    if not trace.has(paths):
-                        continue
-                    yield f'{body.name}.{name}', (_vector(trace, paths) if fields[name].shape
-                                                  else _signal(trace, paths[0]))
+            found.setdefault(message.topic, []).extend(
+                Column(f'{body.name}.{name}', tuple(paths), bool(fields[name].shape))
+                for name, paths in by_field(message))
+    return found
 
 
-def _vector(trace: Trace, paths: Sequence[str]) -> Signal:
-    """Return several fields of a topic as columns."""
-    return Signal(trace.t, np.stack([trace[path] for path in paths], axis=1))
-
-
-def _signal(trace: Trace, path: str) -> Signal:
-    """Return a field of a topic; absolute pressures as gauge ones."""
-    values = np.array(trace[path], np.float64)
-    return Signal(trace.t, values - ATMOSPHERE if path == 'fluid_pressure' else values)
+def _single(name: str, path: str) -> Column:
+    """Return a column of one number; absolute pressures as gauge ones."""
+    return Column(name, (path,), offset=-ATMOSPHERE if path == 'fluid_pressure' else 0.0)

@@ -1,78 +1,102 @@
-"""The signals of a bag as arrays over time."""
+"""Columns of numbers from the messages of a bag, read chunk by chunk into arrays of known size."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
-from isa_ros.bag.provenance import CONFIGURATION
+from isa_ros.bag.message_table import MessageTable
 from isa_ros.bag.reader import Bag
-from isa_ros.config.recorded_run import recorded_run, RecordedRun
 from isa_ros.errors import BagError
-from msg_adapters import applied_parameters, device, diagnostics, event
 from msg_adapters.cdr_reader import message_class
-from msg_adapters.template import number_columns
+from msg_adapters.template import NumberLayout
 import numpy as np
+from numpy.typing import NDArray
 
-_NO_SIGNALS = (  # texts of any length
-    applied_parameters.TYPE, device.TYPE, diagnostics.TYPE, event.TYPE)
+Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+class Column(NamedTuple):
+    """What is wanted of the messages of a topic: a number, or a row of numbers."""
+
+    name: str
+    paths: tuple[str, ...]
+    """Of its fields: ``position[0]``."""
+    is_row: bool = False
+    offset: float = 0.0
+    """Added to each value."""
+
+
 class Trace:
-    """One topic: times (n,) in s and its numeric fields by path, each of shape (n,)."""
+    """Times and columns of one topic; a column that its messages do not have is left out."""
 
-    t: np.ndarray
-    fields: np.ndarray
+    def __init__(self, topic: str, type_name: str, n: int, columns: Sequence[Column],
+                 where: str) -> None:
+        self.times = np.empty(n, np.int64)
+        """Of the messages, ns, (n,)."""
+        self.values: dict[str, Floats] = {}
+        """By name of the column, (n,), or (n, k) of a row of k numbers."""
+        self._type, self._columns, self._where = type_name, columns, f'{where}: {topic}'
+        self._layout: NumberLayout | None = None
+        self._filled = 0
 
-    def __getitem__(self, path: str) -> np.ndarray:
-        return self.fields[path]
+    def add(self, messages: MessageTable) -> None:
+        """
+        Add messages behind those added before.
 
-    def has(self, paths: Sequence[str]) -> bool:
-        """Return whether its messages have all these fields, as those of this version do."""
-        return set(paths) <= set(self.fields.dtype.names or ())
+        Raises
+        ------
+        BagError
+            They differ from the first one in more than their numbers.
+
+        """
+        begin, end = self._filled, self._filled + len(messages.times)
+        self._filled = end
+        self.times[begin:end] = messages.times
+        if not self._columns:
+            return
+        if self._layout is None:
+            self._begin(messages.content[messages.begins[0]:messages.ends[0]])
+        stored = messages.bytes_of()
+        numbers = None if stored is None or self._layout is None else self._layout.numbers(stored)
+        if numbers is None:
+            raise BagError(f'{self._where}: the messages change their layout, cannot be drawn')
+        for column in self._columns:
+            if column.name in self.values:
+                into = self.values[column.name][begin:end].reshape(end - begin, -1)
+                for k, path in enumerate(column.paths):
+                    into[:, k] = numbers[path]
+                if column.offset:
+                    into += column.offset
+
+    def _begin(self, first: bytes) -> None:
+        """Make room for the columns that the first message has."""
+        self._layout = NumberLayout.of(first, message_class(self._type))
+        names = set() if self._layout is None else {*(self._layout.record.names or ())}
+        n = len(self.times)
+        for column in self._columns:
+            if names.issuperset(column.paths):
+                self.values[column.name] = np.empty(
+                    (n, len(column.paths)) if column.is_row else (n,))
 
 
-def read_traces(path: Path) -> tuple[RecordedRun, dict[str, Trace]]:
+def read_traces(bag: Bag, wanted: Mapping[str, Sequence[Column]]) -> dict[str, Trace]:
     """
-    Return the run of a bag to read it by, and every topic of signals in it by name.
+    Return the columns of topics, as far as the bag has them; without columns the times alone.
 
     Raises
     ------
     BagError
-        Not a bag, damaged, or a topic whose messages change their layout.
+        The messages of a topic change their layout.
+    CdrError
+        A message is not of its type.
 
     """
-    bag = Bag(path)
-    times: dict[str, list[int]] = {}
-    messages: dict[str, list[bytes]] = {}
-    for message in bag.messages():
-        if bag.types[message.topic] in _NO_SIGNALS:
-            continue
-        times.setdefault(message.topic, []).append(message.t_ns)
-        messages.setdefault(message.topic, []).append(message.data)
-    found = recorded_run(bag.provenance.configuration, f'{path}: {CONFIGURATION}')
-    return found, {
-        topic: Trace(seconds(np.array(times[topic]) - found.run.start_ns),
-                     columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
-        for topic in times}
+    traces = {topic: Trace(topic, bag.types[topic], bag.counts[topic], columns, str(bag.path))
+              for topic, columns in wanted.items() if bag.counts[topic]}
+    for topic, messages in bag.columns(traces):
+        traces[topic].add(messages)
+    return traces
 
 
-def seconds(t_ns: np.ndarray) -> np.ndarray:
+def seconds(t_ns: NDArray[np.int64]) -> Floats:
     """Return integer nanoseconds as the seconds of a trace, (n,)."""
-    return t_ns * 1e-9
-
-
-def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray:
-    """
-    Return the numbers of messages of one layout as a structured view, shape (n,).
-
-    Raises
-    ------
-    BagError
-        The messages differ in more than their numbers.
-
-    """
-    found = number_columns(messages, message_class(type_name))
-    if found is None:
-        raise BagError(f'{where}: the messages change their layout, cannot be drawn')
-    return found
+    return t_ns.astype(np.float64) * 1e-9
