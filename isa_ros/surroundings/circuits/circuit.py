@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError, RunError
-from isa_ros.surroundings.circuits.network import circuit_advance, circuit_rates
+from isa_ros.surroundings.circuits.network import (
+    circuit_advance, circuit_rates, WORK_ROWS)
 from isa_ros.surroundings.circuits.nodes import (
     feeding_capacity, gas_volume, node_capacity, node_energy, node_pressure)
 from isa_ros.surroundings.circuits.plan import Network, network_of
@@ -66,7 +67,7 @@ class Circuit:
         self._rows = [1 + places.index(own.place) for own in fed]
         self.state: NDArray[np.float64] = at_rest(sheet, network)
         self._network, self._steps = network, 0
-        self._work = np.zeros((5, len(self.state)))
+        self._work = np.zeros((WORK_ROWS, len(self.state)))
         self._rates = np.zeros(len(self.state))
         self._held = np.zeros(len(network.nodes))
         self._none = np.zeros(len(network.nodes))

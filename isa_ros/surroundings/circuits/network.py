@@ -16,7 +16,8 @@ fastest of them (`isa_ros.surroundings.circuits.stiffness`).
 from isa_ros.core.kernel import kernel
 from isa_ros.surroundings.circuits.check import CHECK, check_flow
 from isa_ros.surroundings.circuits.line import friction_drop, LINE, line_rate
-from isa_ros.surroundings.circuits.nodes import heat_rates, node_pressure
+from isa_ros.surroundings.circuits.nodes import (
+    heat_rates, node_energy, node_pressure, phase_of, temperature_with)
 from isa_ros.surroundings.circuits.orifice import latched, opening_rate, ORIFICE, orifice_flow
 from isa_ros.surroundings.circuits.pump import PUMP, pump_rate
 from isa_ros.surroundings.circuits.relief import RELIEF, relief_flow
@@ -35,6 +36,9 @@ _NOTHING = 1e-100       # of any unit: what decays ends here, before it slows th
 
 PER_NODE, PER_ELEMENT = 4, 4
 """Floats of a state: contents, temperatures, impulses, heats; own, lost, through, latches."""
+STAGES = 4
+WORK_ROWS = 6
+"""Rows as long as a state that `circuit_advance` works in."""
 
 
 @kernel
@@ -100,34 +104,52 @@ def circuit_rates(state, drawn, nodes, elements, pressures, rates):
 
 
 @kernel
+def rk4_step(h, drawn, nodes, elements, state, work):
+    """
+    Advance the state of a circuit by one step of ``h`` s, but for latches; as `circuit_advance`.
+
+    What flows into a node with gas brings it P dD, with the weights of the stages: where the step
+    crosses a corner of its pressure, the gas has the temperature of that energy  (E12).
+    """
+    n, size = len(nodes), len(state)
+    pressures, between, rates, total, last, brought = (
+        work[0], work[1], work[2], work[3], work[4], work[5])
+    for k in range(size):
+        last[k] = between[k] = state[k]
+        total[k] = brought[k] = 0.0
+    for stage in range(STAGES):
+        circuit_rates(between, drawn, nodes, elements, pressures, rates)
+        weight = 1.0 if stage == 0 or stage == STAGES - 1 else 2.0
+        share = 0.5 if stage < 2 else 1.0   # of the step, at which the next stage is
+        for k in range(size):
+            total[k] += weight * rates[k]
+            between[k] = last[k] + share * h * rates[k]
+        for i in range(n):
+            brought[i] += weight * pressures[i] * rates[i]
+    for k in range(size):
+        state[k] = last[k] + h / 6.0 * total[k]
+    for i in range(n):
+        before, node = last[n + i], nodes[i]
+        if node.gas.amount > 0.0 and (
+                phase_of(last[i], before, node) != phase_of(state[i], state[n + i], node)):
+            energy = (node_energy(last[i], before, node) + h / 6.0 * brought[i]
+                      + (state[3 * n + i] - last[3 * n + i]))
+            state[n + i] = temperature_with(energy, state[i], state[n + i], node)
+
+
+@kernel
 def circuit_advance(steps, h, drawn, nodes, elements, state, work):
     """
     Advance the state of a circuit by ``steps`` steps of ``h`` s, by RK4.
 
-    ``work`` is room for five rows as long as the state. The pressures of the nodes at the end
-    are in its first row.
+    ``work`` is room for `WORK_ROWS` rows as long as the state. The pressures of the nodes at the
+    end are in its first row.
     """
     n, m, size = len(nodes), len(elements), len(state)
-    pressures, between, rates, total, last = work[0], work[1], work[2], work[3], work[4]
+    pressures = work[0]
     latches = PER_NODE * n + 3 * m
     for _ in range(steps):
-        for k in range(size):
-            last[k] = state[k]
-        circuit_rates(state, drawn, nodes, elements, pressures, rates)
-        for k in range(size):
-            total[k] = rates[k]
-            between[k] = last[k] + 0.5 * h * rates[k]
-        circuit_rates(between, drawn, nodes, elements, pressures, rates)
-        for k in range(size):
-            total[k] += 2.0 * rates[k]
-            between[k] = last[k] + 0.5 * h * rates[k]
-        circuit_rates(between, drawn, nodes, elements, pressures, rates)
-        for k in range(size):
-            total[k] += 2.0 * rates[k]
-            between[k] = last[k] + h * rates[k]
-        circuit_rates(between, drawn, nodes, elements, pressures, rates)
-        for k in range(size):
-            state[k] = last[k] + h / 6.0 * (total[k] + rates[k])
+        rk4_step(h, drawn, nodes, elements, state, work)
         for j in range(m):
             if elements[j].law == OF_ORIFICE:
                 sensed = elements[j].senses

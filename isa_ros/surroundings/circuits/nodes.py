@@ -16,12 +16,28 @@ from isa_ros.surroundings.circuits.accumulator import GAS, gas_energy, gas_rate
 import numpy as np
 
 VAPOUR = -1.0e5     # Pa gauge, of boiling oil
+_NEWTON_STEPS = 4   # from an error of 1e-4 to rounding
 
 NODE = np.dtype((np.record, [
     ('is_held', 'f8'),      # 1: of a tank, or outside, at the pressure p_held
     ('p_held', 'f8'),       # Pa
     ('c', 'f8'),            # V/beta of all the oil at it, m3/Pa
     ('gas', GAS)]))
+
+
+@kernel
+def is_without_oil(content, theta, node):
+    """Return whether the gas of a node, if it has any, fills its shell  (C46)."""
+    gas = node.gas
+    return gas.amount <= 0.0 or (content / node.c + ATMOSPHERE) * gas.v_0 <= gas.amount * theta
+
+
+@kernel
+def phase_of(content, theta, node):
+    """Return 0 with oil in its accumulator, 1 without, 2 with a cavity: P has corners between."""
+    if not is_without_oil(content, theta, node):
+        return 0
+    return 1 if content > node.c * VAPOUR else 2
 
 
 @kernel
@@ -34,10 +50,9 @@ def node_pressure(content, theta, node):
     """
     if node.is_held > 0.0:
         return node.p_held
-    dry = content / node.c
+    if is_without_oil(content, theta, node):
+        return max(VAPOUR, content / node.c)
     gas = node.gas
-    if gas.amount <= 0.0 or (dry + ATMOSPHERE) * gas.v_0 <= gas.amount * theta:
-        return max(VAPOUR, dry)
     b = content + node.c * ATMOSPHERE - gas.v_0
     root = math.sqrt(b * b + 4.0 * node.c * gas.amount * theta)
     if b < 0.0:
@@ -95,6 +110,25 @@ def node_energy(content, theta, node):
     if node.gas.amount > 0.0:
         stored += gas_energy(gas_volume(pressure, theta, node), theta, node.gas)
     return stored
+
+
+@kernel
+def temperature_with(energy, content, theta, node):
+    """
+    Return the temperature of its gas at which a node stores ``energy``, in K  (E10).
+
+    Newton's method from ``theta``, which is near: of the content D `dE/dtheta = n R/(kappa - 1)`,
+    and with oil in the accumulator `C p n R/(V_g + C p)` more. There is gas.
+    """
+    gas = node.gas
+    for _ in range(_NEWTON_STEPS):
+        slope = gas.amount / (gas.kappa - 1.0)
+        if not is_without_oil(content, theta, node):
+            pressure = node_pressure(content, theta, node)
+            soft = node.c * (pressure + ATMOSPHERE)
+            slope += soft * gas.amount / (gas_volume(pressure, theta, node) + soft)
+        theta -= (node_energy(content, theta, node) - energy) / slope
+    return theta
 
 
 @kernel

@@ -4,7 +4,7 @@ from isa_ros.config.text.parameter_sets import build_one_of
 from isa_ros.config.text.sections import Place, written
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.surroundings.circuits.circuit import Circuit, Fed
-from isa_ros.surroundings.circuits.network import circuit_advance
+from isa_ros.surroundings.circuits.network import circuit_advance, WORK_ROWS
 from isa_ros.surroundings.circuits.nodes import node_content, node_pressure
 from isa_ros.surroundings.circuits.plan import Network, network_of
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
@@ -45,7 +45,7 @@ class Bench:
         self.state = np.zeros(4 * n + 4 * m)
         self.state[n:2 * n] = self.network.nodes['gas']['theta_a']
         self.drawn = np.zeros(n)
-        self._work = np.zeros((5, len(self.state)))
+        self._work = np.zeros((WORK_ROWS, len(self.state)))
 
     def put(self, place: str, pressure: float) -> None:
         """Put a place, and the nodes within a line of this name, at a pressure."""

@@ -151,14 +151,14 @@ def test_a_saved_state_has_the_gas_that_is_left() -> None:
 
 
 @pytest.mark.parametrize('lpm', [60.0, 600.0])
-def test_the_energy_of_one_that_runs_empty_closes_but_for_a_step(lpm: float) -> None:
-    """E12 within 1e-9 before; the step over the corner errs by up to 1e-4 of the 25 kJ stored."""
+def test_the_energy_of_one_that_runs_empty_and_is_filled_closes(lpm: float) -> None:
+    """E12 within 1e-9 of the 25 kJ that it had stored, in the steps over both corners too."""
     circuit = circuit_of(STANDS + BUFFER, 'main')
-    while circuit.pressures[0][0] > 0.0:
-        is_full = circuit.pressures[0][0] > 10.5e6
-        bound = 1e-9 * abs(float(circuit.samples[0]['energy'])) if is_full else 2.5
-        assert abs(surplus(circuit)) <= bound
-        circuit.advance_held([lpm / 60e6], [0.0])
+    tick = lpm / 60e6
+    for drawn, end in ((tick, 0.0), (-tick, 15e6)):
+        while (circuit.pressures[0][0] - end) * drawn > 0.0:
+            circuit.advance_held([drawn], [0.0])
+            assert surplus(circuit) == pytest.approx(0.0, abs=2.5e-5)
 
 
 def losing(share: float) -> CircuitSupply:

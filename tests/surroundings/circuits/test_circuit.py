@@ -221,7 +221,8 @@ def test_what_its_port_says_is_what_it_does() -> None:
         circuit.advance_held([6.0 * LPM * 1e-3, 2.0 * LPM * 1e-3], [0.0, 0.0])
     for own, node in zip(circuit.nodes(), circuit._nodes):
         n = len(circuit._network.nodes)
-        state, work = circuit.state.copy(), np.zeros((5, len(circuit.state)))
+        state = circuit.state.copy()
+        work = np.zeros((network.WORK_ROWS, len(state)))
         h = 1e-7
         network.circuit_advance(1, h, np.zeros(n), circuit._network.nodes,
                                 circuit._network.elements, state, work)

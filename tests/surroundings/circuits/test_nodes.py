@@ -1,7 +1,7 @@
 """Nodes: content and pressure are inverse, missing oil is a cavity."""
 
 from isa_ros.surroundings.circuits.nodes import (
-    node_capacity, node_content, node_energy, node_pressure, VAPOUR)
+    node_capacity, node_content, node_energy, node_pressure, phase_of, temperature_with, VAPOUR)
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import Bench, circuit_of, SIMPLE
@@ -50,6 +50,20 @@ def test_capacity_is_the_slope_of_the_content_of_an_adiabatic_change() -> None:
     slope = 1e-3 * 1e-5 / (bench.pressure('main') - 15e6)
     # the change is 1.7e-5 of the gas: the slope differs by half of that; heat is 1e-6
     assert slope == pytest.approx(expected, rel=1e-4, abs=0.0)
+
+
+@pytest.mark.parametrize(('content', 'phase'), [
+    (3e-4, 0), (1.001 * 10e6 * C, 0), (0.999 * 10e6 * C, 1), (1e-7, 1), (-1e-4, 2)])
+def test_the_temperature_with_an_energy_is_its_inverse(content: float, phase: int) -> None:
+    """On both sides of both corners of P, from 1 % beside it, also where that is another side."""
+    bench = Bench(STANDS + BUFFER)
+    main = bench.network.node('main')
+    node, theta = bench.network.nodes[main], float(bench.state[bench.n + main])
+    assert phase_of(content, theta, node) == phase
+    energy = float(node_energy(content, theta, node))
+    for beside in (0.99, 1.01):
+        assert temperature_with(energy, content, beside * theta, node) == pytest.approx(
+            theta, rel=1e-12, abs=0.0)
 
 
 def test_energy_is_the_integral_of_the_pressure() -> None:
