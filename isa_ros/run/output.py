@@ -1,6 +1,6 @@
 """Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from isa_ros.bag.message_chunk import Room
@@ -49,6 +49,9 @@ class QuietRecorder(Recorder, Protocol):
 class Outlet(Protocol):
     """The publishers of one source, in the order of its topics."""
 
+    wanted: Collection[int] | None
+    """Places of the messages that `publish` looks at; None: all."""
+
     def has_subscribers(self) -> bool:
         """Return whether there is a subscription; called once a tick."""
         ...
@@ -60,6 +63,8 @@ class Outlet(Protocol):
 
 class NoOutlet:
     """An `Outlet` without topics."""
+
+    wanted: Collection[int] | None = ()
 
     def has_subscribers(self) -> bool:
         """Return False."""
@@ -155,9 +160,11 @@ class RunOutput(RowSink):
         packer.pack(t_ns, start_ns, rows.tuned, rows.tuned_supplies)
         self._unrecorded = tick
         for row in subscribed:
-            outlets.actuators[row].publish(self._packer.of_actuator(row))
+            outlet = outlets.actuators[row]
+            outlet.publish(packer.of_actuator(row, outlet.wanted))
         if has_surroundings:
-            outlets.surroundings.publish(self._packer.of(self._surroundings))
+            outlets.surroundings.publish(
+                packer.of(self._surroundings, outlets.surroundings.wanted))
 
     def end(self) -> None:
         """

@@ -19,13 +19,13 @@ from isa_ros.run.body_messages import prepared, type_of
 from isa_ros.run.link_packing import LinkWords
 from isa_ros.run.pack_kernel import APPLIED, pack, Packing, PRESSURES, Target
 from isa_ros.run.quiet_recording import record, Recording
-from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
+from isa_ros.run.rare_messages import RareMessages
 from isa_ros.run.supply_messages import of_supply, SIGNALS
 from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
 from msg_adapters.actuator_messages import (
-    CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
+    CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, TEMPERATURE, topics)
 from msg_adapters.sensor_messages import fluid_pressure, temperature
 from msg_adapters.template import FIRST_VALUE, Prepared, Template
 import numpy as np
@@ -120,6 +120,9 @@ class Packer:
         self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
+        self._own = [[topic.name for topic in topics_of_actuator(
+            f'/{name}', name in names.heated, row in self._links.rows, name in names.cushioned)]
+            for row, (name, _) in enumerate(names.actuators)]
         self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}
         self._bind()
 
@@ -147,6 +150,10 @@ class Packer:
             Target(template.block, template.places, template.sources))
         self._pack = Bound(pack, self._packing)
         self._kinds, self._sent_kinds = rows.applied['kinds'], self._links.sent['kinds']
+        self._commands = {
+            f'/{name}/{suffix}': kinds[row:row + 1]
+            for suffix, kinds in ((_SETPOINT, self._kinds), (_SENT, self._sent_kinds))
+            for row, (name, _) in enumerate(self._names.actuators)}
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
@@ -157,13 +164,17 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        self._packing.times[:] = t_ns, tick_start_ns, self.start_ns
-        self._pack.run()
+        self.pack_numbers(t_ns, tick_start_ns)
         if self._periods:
             self._not_due = frozenset(
                 name for name, period in self._periods.items()
                 if t_ns and t_ns // period == tick_start_ns // period)
         self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies, self.start_ns)
+
+    def pack_numbers(self, t_ns: int, tick_start_ns: int) -> None:
+        """Pack the messages of numbers alone; the others stay those of the last `pack`."""
+        self._packing.times[:] = t_ns, tick_start_ns, self.start_ns
+        self._pack.run()
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -220,34 +231,40 @@ class Packer:
         return layout([index for index, _ in present], starts[places].tolist(),
                       sizes[places].tolist())
 
-    def of_actuator(self, row: int) -> list[bytes | None]:
-        """Return the messages of one actuator in the order of `topics_of_actuator`."""
-        name = self._names.actuators[row][0]
-        commands = [(_SETPOINT, self._kinds), (_SENT, self._sent_kinds)]
-        messages = [self.rare.get(f'/{name}/{PARAMETERS}'), *(
-            self._message(f'/{name}/{suffix}') if kinds[row] else None
-            for suffix, kinds in commands[:1 + (row in self._links.rows)]),
-            self.rare.get(f'/{name}/{DEVICE}'),
-            *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
-        if name in self._names.cushioned:
-            messages.append(self._message(f'/{name}/{CUSHION_PRESSURE[0]}'))
-        if name in self._names.heated:
-            topic = f'/{name}/{TEMPERATURE[0]}'
-            messages.append(None if topic in self._not_due else self._message(topic))
-        return messages
+    def of_actuator(self, row: int, wanted: Collection[int] | None = None) -> list[bytes | None]:
+        """
+        Return the messages of one actuator in the order of `topics_of_actuator`.
+
+        ``wanted`` are the places of those that somebody reads; None: all. The others are None.
+        """
+        return self._messages(self._own[row], wanted)
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
         return bool(self._kinds[row] or self._sent_kinds[row])
 
-    def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
-        """Return the messages of some topics of supplies and body; None: none at this instant."""
-        return [self.rare.get(topic.name) if topic.name in (OF_SUPPLIES, DIAGNOSTICS)
-                else None if topic.name in self._not_due
-                else self._message(topic.name) for topic in topics]
+    def of(
+            self, topics: Sequence[Topic],
+            wanted: Collection[int] | None = None) -> list[bytes | None]:
+        """Return the messages of some topics; None: none at this instant, or not wanted."""
+        return self._messages([topic.name for topic in topics], wanted)
 
-    def _message(self, name: str) -> bytes:
-        return self._template.message(self._place[name])
+    def _messages(
+            self, names: Sequence[str], wanted: Collection[int] | None) -> list[bytes | None]:
+        messages: list[bytes | None] = [None] * len(names)
+        for slot in range(len(names)) if wanted is None else wanted:
+            messages[slot] = self._message(names[slot])
+        return messages
+
+    def _message(self, name: str) -> bytes | None:
+        """Return the message of a topic at the packed instant; None: it has none."""
+        place = self._place.get(name)
+        if place is None:
+            return self.rare.get(name)
+        kinds = self._commands.get(name)
+        if name in self._not_due or (kinds is not None and not kinds[0]):
+            return None
+        return self._template.message(place)
 
     @property
     def surroundings(self) -> list[Topic]:

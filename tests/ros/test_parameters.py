@@ -228,6 +228,7 @@ class Kept:
     """An outlet with a subscription for every topic."""
 
     messages: Messages = ()
+    wanted = None
 
     def has_subscribers(self) -> bool:
         return True

@@ -10,11 +10,12 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
-from isa_ros.nodes.lockstep import coordinator_end as lockstep
+from isa_ros.nodes.lockstep import coordinator_end as lockstep, steady_ticks as steady
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.lockstep.steady_ticks import steady_ticks, SteadyTicks
+from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_tick
 import numpy as np
@@ -189,26 +190,60 @@ def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch
     assert results[0] == results[1]
 
 
+def command_at(tick: int) -> float | None:
+    return 0.03 + 1e-5 * tick if 20 <= tick < 70 else None
+
+
+def noted(outlet, is_subscribed: bool, messages: list[tuple[int, bytes]]) -> None:
+    """Let an outlet note the messages that are kept; as with a subscription if there is one."""
+    def note(given):
+        messages.extend((slot, given[slot]) for slot, is_kept in enumerate(outlet._is_kept)
+                        if is_kept and given[slot] is not None)
+
+    def refresh():
+        outlet._countdown, outlet.is_subscribed = 20, is_subscribed
+    outlet.publish, outlet.refresh = note, refresh
+
+
 def test_what_is_kept_for_later_subscriptions_is_the_same(observer, looped):
-    """Applied setpoints and status, in their order, with a command at every tick of a while."""
+    """The last applied setpoints, in their order, with a command at every tick of a while."""
     found = []
     for is_looped in True, False:
         with driven(observer, is_looped) as robot:
-            outlet, messages = robot.nodes[1].outlet, []
+            messages: list[tuple[int, bytes]] = []
             for k in range(10):
                 robot.tick(k)
             robot.transport.snapshots()     # after all before it has been published
-
-            def note(given, outlet=outlet, messages=messages):
-                messages.extend((slot, given[slot]) for slot, is_kept in enumerate(outlet._is_kept)
-                                if is_kept and given[slot] is not None)
-            outlet.publish = note
+            noted(robot.nodes[1].outlet, False, messages)
             for k in range(10, 100):
-                robot.tick(k, 0.03 + 1e-5 * k if 20 <= k < 70 else None)
+                robot.tick(k, command_at(k))
             robot.transport.snapshots()
             found.append(messages)
             robot.transport.close()
-    assert found[0] == found[1] and len(found[0]) == 50
+    assert found[0][-KEPT.depth:] == found[1][-KEPT.depth:] and len(found[1]) == 50
+    kept = set(found[1])
+    assert found[0] == [own for own in found[1] if own in set(found[0])] and kept >= set(found[0])
+    assert max(looped) > 5
+
+
+def test_a_subscription_receives_all_setpoints_since_the_last_ones_that_are_kept(
+        observer, looped, monkeypatch):
+    """One that came while they were kept: without a gap, as without the loop."""
+    monkeypatch.setattr(steady, 'KEPT_NS', 10**12)
+    found = []
+    for is_looped in True, False:
+        with driven(observer, is_looped) as robot:
+            messages: list[tuple[int, bytes]] = []
+            for k in range(22):
+                robot.tick(k, command_at(k))
+            robot.transport.snapshots()
+            noted(robot.nodes[1].outlet, True, messages)
+            for k in range(22, 100):
+                robot.tick(k, command_at(k))
+            robot.transport.snapshots()
+            found.append(messages)
+            robot.transport.close()
+    assert found[0] == found[1] and len(found[0]) == 48
     assert max(looped) > 5
 
 

@@ -14,7 +14,7 @@ from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.lockstep.sockets import LARGEST
-from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.answer_loop import _KEPT, AnswerLoop, MOST_KEPT
 from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts
@@ -148,19 +148,34 @@ def test_the_loop_ends_where_something_is_published(bench, tick, target):
 
 
 def test_commands_are_kept_for_what_is_published_of_them(bench):
-    """With the ends of their ticks; not that of the last tick, whose rows are there."""
+    """With the ends of their ticks, over several calls, until there is no more room."""
     targets = {8: 0.021, 9: 0.022, 11: 0.023}
     begin = bench.actuator.t_ns
     for k in range(7, 12):
         bench.coordinator.send(encoded(k, target=targets.get(k)))
     assert bench.run(7, most=5, keeps=True) is Ended.ANSWERED and bench.loop.done == 5
+    bench.coordinator.send(encoded(12, target=0.024))
+    assert bench.run(12, keeps=True) is Ended.ANSWERED and bench.loop.n_kept == 4
     assert [(t_ns - begin, command['position'], command['kinds'])
-            for t_ns, command in bench.loop.kept()] == [
-                (2_000_000, 0.021, HAS_SETPOINT), (3_000_000, 0.022, HAS_SETPOINT)]
-    for k in range(12, 50):
+            for t_ns, command in bench.loop.take_kept()] == [
+                (k * 1_000_000, target, HAS_SETPOINT)
+                for k, target in ((2, 0.021), (3, 0.022), (5, 0.023), (6, 0.024))]
+    assert bench.loop.take_kept() == []
+    for k in range(13, 13 + MOST_KEPT + 1):
         bench.coordinator.send(encoded(k, target=0.02))
-    assert bench.run(12, most=99, keeps=True) is Ended.ANSWERED
-    assert bench.loop.done == 33 and len(bench.loop.kept()) == 32
+        bench.run(k, keeps=True)
+        bench.coordinator.recv(LARGEST)
+        if bench.loop.n_kept == MOST_KEPT:
+            break
+    assert k == 12 + MOST_KEPT and len(bench.loop.take_kept()) == MOST_KEPT
+
+
+def test_the_loop_ends_where_there_is_no_more_room_for_commands(bench):
+    bench.loop._values[_KEPT] = MOST_KEPT - 2
+    for k in range(7, 11):
+        bench.coordinator.send(encoded(k, target=0.02))
+    assert bench.run(7, most=4, keeps=True) is Ended.ANSWERED
+    assert bench.loop.done == 2 and bench.loop.n_kept == MOST_KEPT
 
 
 def test_a_command_handed_to_a_link_is_published():

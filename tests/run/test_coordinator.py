@@ -147,6 +147,8 @@ class FakeSource:
 class FakeOutlet:
     """Writes down what is published."""
 
+    wanted = None
+
     def __init__(self, log: list[str], line: Callable[[bytes], str]) -> None:
         self.log, self.line = log, line
 

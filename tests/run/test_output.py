@@ -18,6 +18,8 @@ STEP_NS = RUN.step_ns
 class FakeOutlet:
     """Keeps what is published where it has a subscription."""
 
+    wanted = None
+
     def __init__(self, log: list[str], name: str, has_subscription: bool) -> None:
         self.log, self.name, self.has_subscription = log, name, has_subscription
         self.sent: list[Messages] = []

@@ -123,6 +123,8 @@ def test_a_start_that_no_stamp_has_is_refused(value):
 def test_the_clock_events_and_an_actuator_s_own_node_begin_there_too():
     """What a run publishes beside its bag, and the time that each node gets."""
     class Kept:
+        wanted = None
+
         def __init__(self):
             self.messages = []
 

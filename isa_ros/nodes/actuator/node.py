@@ -1,6 +1,6 @@
 """ROS 2 node of one smart actuator: setpoints in, one tick, messages out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -15,7 +15,7 @@ from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
-from isa_ros.nodes.middleware.qos import SETPOINT
+from isa_ros.nodes.middleware.qos import KEPT, SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.plant.cushion_sheets import is_cushioned
@@ -121,30 +121,49 @@ class ActuatorNode(Node):
 
         They are those of the last of so many ticks; the others had nothing to publish.
         """
-        tuned = self.actuator.applied_parameters
+        if self.has_news(n_ticks):
+            self.publish_last()
+
+    def has_news(self, n_ticks: int, keeps: bool = False) -> bool:
+        """
+        Return whether the last of so many ticks has something to publish.
+
+        There is a subscription, a parameter has changed, the device has a status, or, unless the
+        caller ``keeps`` it, a command was applied. Call this once after these ticks.
+        """
         if n_ticks > 1:
             self.outlet.skip(n_ticks - 1)
         has_subscribers = self.outlet.has_subscribers()
         t_ns, step_ns = self.actuator.t_ns, self.setup.timing.step_ns
-        start_ns = max(0, t_ns - step_ns)
         if max(0, t_ns - n_ticks * step_ns) != self._published_ns:     # a state was restored
             self._packer.rare.announce()
         self._published_ns = t_ns
-        if not (has_subscribers or tuned or self._packer.has_applied(0)
-                or self._packer.rare.has_device(0, t_ns, start_ns)):
-            return
-        self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
-        self.outlet.publish(self._packer.of_actuator(0))
+        return (has_subscribers or bool(self.actuator.applied_parameters)
+                or (not keeps and self._packer.has_applied(0))
+                or self._packer.rare.has_device(0, t_ns, max(0, t_ns - step_ns)))
 
-    def publish_command(self, t_ns: int, command: np.void) -> None:
-        """Publish a command that took effect in a tick before the last, which ended at t_ns."""
-        applied = self.actuator.memory.applied
+    def publish_last(self) -> None:
+        """Publish the messages of the last tick that somebody reads, or that are kept."""
+        t_ns, tuned = self.actuator.t_ns, self.actuator.applied_parameters
+        self._packer.pack(
+            t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
+        self.outlet.publish(self._packer.of_actuator(0, self.outlet.wanted))
+
+    def publish_commands(self, commands: Sequence[tuple[int, np.void]]) -> None:
+        """
+        Publish commands that took effect in earlier ticks, with the end of each tick in ns.
+
+        Without a subscription those that a later one receives are enough.
+        """
+        self.outlet.refresh()
+        if not self.outlet.is_subscribed:
+            commands = commands[-KEPT.depth:]
+        applied, step_ns = self.actuator.memory.applied, self.setup.timing.step_ns
         last = applied.copy()
-        applied[0] = command
-        self._packer.pack(t_ns, t_ns - self.setup.timing.step_ns, {})
-        messages = self._packer.of_actuator(0)
-        self.outlet.publish([message if slot == _APPLIED else None
-                             for slot, message in enumerate(messages)])
+        for t_ns, command in commands:
+            applied[0] = command
+            self._packer.pack_numbers(t_ns, t_ns - step_ns)
+            self.outlet.publish(self._packer.of_actuator(0, (_APPLIED,)))
         applied[:] = last
 
     def stamp_from(self, time_ns: int) -> None:

@@ -46,8 +46,7 @@ class ParticipantEnd:
             ticks: SteadyTicks | None = None) -> None:
         self._name = name or node.get_name()
         self._log = node.get_logger()
-        self._role = role
-        self._ticks = ticks
+        self._role, self._ticks = role, ticks
         self._identity = secrets.token_bytes(8)
         path = f'{node.get_namespace().rstrip("/")}/{node.get_name()}'
         of_run = path.removesuffix(f'/{self._name}')
@@ -66,15 +65,13 @@ class ParticipantEnd:
         self._close_wire()
         self._run_id = 0  # 0: bound to no run
         self._external: Sequence[str] = ()  # bodies of the run that any simulator may compute
-        self._index = self._n_participants = 0
-        self._next_tick = 0
+        self._index = self._n_participants = self._next_tick = 0
         self._request = 0  # number of the last request; they decrease
-        self._has_begun = False
+        self._has_begun = self._is_abandoned = False
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
         self._last: tuple[AnswerKind, Parts | None] = AnswerKind.DONE, ()  # None: see ticks
         self._last_message = 0.0  # s, monotonic clock: last message of this run's coordinator
-        self._is_abandoned = False
 
     def spin(self, should_stop: Callable[[], bool]) -> None:
         """Take part in one run after another until ``should_stop``."""
@@ -130,6 +127,7 @@ class ParticipantEnd:
                     last, AnswerKind.DONE, ticks.parts):
                 ticks.publish()
         if ended is Ended.NOTHING:
+            ticks.publish_kept()
             return wire.take()
         return ticks.take_step() if ended is Ended.OTHER else None
 
@@ -148,6 +146,8 @@ class ParticipantEnd:
 
     def _receive(self, data: bytes) -> None:
         """Handle a message; discard one that is not a step, or that does not fit its run."""
+        if self._ticks is not None:
+            self._ticks.publish_kept()
         try:
             step = decode_step(data)
             if step.run_id == self._run_id:

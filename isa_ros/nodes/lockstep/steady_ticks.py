@@ -3,10 +3,12 @@ Ticks of an actuator's node that come by socket and change nothing else, in a co
 
 Setpoints, requests and subscriptions are looked at before and after every tick while the node has
 a matched publisher of setpoints or a subscription; without any, before a tick once per `QUIET_NS`
-of host time, and at the latest every `MOST` ticks. What is kept for later subscriptions, applied
-setpoints, is published then.
+of host time, and at the latest every `MOST` ticks. Applied setpoints, which the middleware keeps
+for later subscriptions, are handed to it every `KEPT_NS` and before all that Python handles; once
+a subscription is there, without a gap and at every tick.
 """
 
+from collections.abc import Sequence
 import time
 
 from isa_ros.actuator.actuator import SmartActuator
@@ -14,16 +16,21 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.nodes.actuator.node import ActuatorNode
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.lockstep.sockets import is_possible, LARGEST, LocalWire
-from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.answer_loop import AnswerLoop, MOST_KEPT
 from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import Step
+import numpy as np
 
 QUIET_NS = 5_000_000
 """Host time between two looks at what may have arrived, without a matched publisher."""
 
 MOST = 20
 """Ticks between two looks at the subscriptions of a node that has none."""
+
+
+KEPT_NS = 100_000_000
+"""Host time between two times at which applied setpoints are published, without a subscription."""
 
 
 class SteadyTicks:
@@ -34,7 +41,7 @@ class SteadyTicks:
         self._loop = _loop_of(node.actuator)
         self._keeps = not node.actuator.has_link
         self._is_due = False
-        self._due_ns = 0
+        self._due_ns = self._kept_due_ns = 0
 
     def expect(self, step: Step, index: int) -> None:
         """Take steps like this one from now on, a tick that was checked and executed."""
@@ -69,10 +76,8 @@ class SteadyTicks:
         return ended
 
     def end(self) -> None:
-        """Move the actuator's time on by the ticks of `run`, and publish what they kept."""
+        """Move the actuator's time on by the ticks of `run`."""
         self._node.actuator.end_ticks(self._loop.done, 0)
-        for t_ns, command in self._loop.kept():
-            self._node.publish_command(t_ns, command)
 
     def parts(self) -> Parts:
         """
@@ -88,8 +93,23 @@ class SteadyTicks:
         return self._role.parts()
 
     def publish(self) -> None:
-        """Publish the results of the last tick, where there is a subscription."""
-        self._node.publish(self._loop.done)
+        """Publish the results of the last tick where there is a subscription, and what is due."""
+        node, loop = self._node, self._loop
+        if node.has_news(loop.done, self._keeps):
+            t_ns = node.actuator.t_ns
+            self._publish([own for own in loop.take_kept() if own[0] != t_ns])
+            node.publish_last()
+        elif loop.n_kept == MOST_KEPT or time.monotonic_ns() >= self._kept_due_ns:
+            self.publish_kept()
+
+    def publish_kept(self) -> None:
+        """Publish the setpoints that were applied and are not published yet."""
+        self._publish(self._loop.take_kept())
+
+    def _publish(self, commands: Sequence[tuple[int, np.void]]) -> None:
+        if commands:
+            self._kept_due_ns = time.monotonic_ns() + KEPT_NS
+            self._node.publish_commands(commands)
 
     @property
     def done(self) -> int:

@@ -1,6 +1,6 @@
 """Publishers of serialised messages, for topics with a subscription only."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from isa_ros.core.topic import Topic
@@ -54,6 +54,8 @@ class PreparedPublishers:
         subscribed = [bool(handle.get_subscription_count()) for handle in self._handles]
         self.is_subscribed = any(subscribed)
         """Whether there was a subscription when they were last counted."""
+        self.wanted: Collection[int] | None = [
+            slot for slot, is_kept in enumerate(self._is_kept) if subscribed[slot] or is_kept]
+        """Places of the messages that are passed to the middleware."""
         self._passed: list[tuple[int, Any]] = [
-            (slot, handle.publish_raw) for slot, handle in enumerate(self._handles)
-            if subscribed[slot] or self._is_kept[slot]]
+            (slot, self._handles[slot].publish_raw) for slot in self.wanted]

@@ -20,7 +20,8 @@ _SOCKET, _TICK, _UNTIL, _MOST, _DONE, _BROKEN, _RECEIVED, _EXPECTED, _KEEPS, _KE
     float_columns(LOOP)[name] for name in (
         'socket', 'tick', 'until_ns', 'most', 'done', 'broken', 'received', 'expected', 'keeps',
         'kept'))
-_MOST_KEPT = 32
+MOST_KEPT = 256
+"""Applied commands that the loop keeps."""
 
 # Calling an enumeration takes about a microsecond; a dictionary a twentieth of it.
 _ENDED = {int(ended): ended for ended in Ended}
@@ -45,7 +46,7 @@ class AnswerLoop:
             _words(memory.replies), _words(memory.observed), _words(memory.applied),
             _words(memory.sent), _words(memory.fed),
             ticked.commands, memory.observed, memory.applied, memory.sent, ticked.clock,
-            np.zeros(_MOST_KEPT, COMMAND), np.zeros(_MOST_KEPT, np.int64))
+            np.zeros(MOST_KEPT, COMMAND), np.zeros(MOST_KEPT, np.int64))
         self._own, self._loop = own, row_record(own.loop)
         self._loop.step, self._loop.answers = step.ctypes.data, own.answers.ctypes.data
         self._loop.advance, self._loop.table = advance.address, advance.table.ctypes.data
@@ -96,7 +97,7 @@ class AnswerLoop:
         Answer at most so many ticks from ``tick`` on; a step that was `Ended.DUE` is the first.
 
         A step is due from ``until_ns`` on, on the host's monotonic clock. ``keeps``: a tick with
-        a command does not end the loop, see `kept`.
+        a command does not end the loop as long as there is room for it, see `take_kept`.
         """
         values = self._values
         values[_KEEPS] = keeps
@@ -106,7 +107,7 @@ class AnswerLoop:
 
     def leave(self) -> Ended:
         """Run no tick, and leave the step that was `Ended.DUE`."""
-        self._values[_DONE] = self._values[_KEPT] = 0
+        self._values[_DONE] = 0
         return Ended.OTHER
 
     @property
@@ -119,11 +120,17 @@ class AnswerLoop:
         """Return what the last tick returned."""
         return self._values[_BROKEN]
 
-    def kept(self) -> list[tuple[int, np.void]]:
-        """Return ends, ns, and commands of the ticks of the last `run` with one, but the last."""
+    @property
+    def n_kept(self) -> int:
+        """Return the number of commands that are kept; `MOST_KEPT` have to be taken."""
+        return self._values[_KEPT]
+
+    def take_kept(self) -> list[tuple[int, np.void]]:
+        """Return ends, ns, and commands of the ticks that had one; they are no longer kept."""
         n, own = self._values[_KEPT], self._own
-        return [(int(step) * PLANT_STEP_NS, command) for step, command in zip(
-            own.kept_at[:n], own.kept[:n]) if step != own.clock[0]]
+        self._values[_KEPT] = 0
+        return [(int(step) * PLANT_STEP_NS, command)
+                for step, command in zip(own.kept_at[:n], own.kept[:n])]
 
     @property
     def has_step(self) -> bool:

@@ -59,7 +59,7 @@ LOOP = np.dtype([
     ('done', 'i8'),         # ticks of the last call
     ('broken', 'i8'),       # what the last tick returned
     ('keeps', 'i8'),        # whether a tick with a command does not end the loop
-    ('kept', 'i8'),         # number of such ticks in the last call
+    ('kept', 'i8'),         # number of such ticks whose commands are kept
 ])
 
 
@@ -95,9 +95,9 @@ class Answering(NamedTuple):
     clock: np.ndarray
     """Of a `Ticked`."""
     kept: np.ndarray
-    """`COMMAND` that took effect in earlier ticks of the call, (m,)."""
+    """`COMMAND` that took effect and is not published yet, (m,)."""
     kept_at: np.ndarray
-    """Plant step at the end of each of these ticks, (m,)."""
+    """Plant step at the end of its tick, (m,)."""
 
 
 @kernel
@@ -140,28 +140,28 @@ def has_news(own):
     """
     Return whether a tick has a message that is published in any case, and must be now.
 
-    A command that took effect is kept meanwhile, where it came without a link.
+    A command that took effect is kept meanwhile, where it came without a link, as far as there
+    is room.
     """
     loop, sample = own.loop[0], own.observed[0]
     t_ns = own.clock[0] * PLANT_STEP_NS
-    if is_status_due(sample.state_since, sample.age, sample.is_stale, t_ns,
-                     t_ns - own.clock[1] * PLANT_STEP_NS):
-        return True
+    is_due = is_status_due(sample.state_since, sample.age, sample.is_stale, t_ns,
+                           t_ns - own.clock[1] * PLANT_STEP_NS)
     if not (own.applied[0].kinds or own.sent[0].kinds):
-        return False
-    if not loop.keeps or loop.kept == len(own.kept):
+        return is_due
+    if not loop.keeps:
         return True
     own.kept[loop.kept] = own.applied[0]
     own.kept_at[loop.kept] = own.clock[0]
     loop.kept += 1
-    return False
+    return is_due or loop.kept == len(own.kept)
 
 
 @kernel
 def answer_ticks(own):
     """Receive steps, advance and answer; return how it `Ended`. ``own`` is an `Answering`."""
     loop = own.loop[0]
-    loop.done = loop.kept = 0
+    loop.done = 0
     while loop.done < loop.most:
         if loop.received == 0:
             found = receive(own.system, loop.socket, loop.step, WORD * len(own.step), 0)

@@ -25,7 +25,8 @@ class Quiet:
         self.actuator, self.has_feed, self.number = bench.actuator, False, bench.end.fileno()
         self.watched = False
         self.served = 0
-        self.published: list[int] = []
+        self.published: list[object] = []
+        self.news = False
         self.on_serve: Callable[[], None] = lambda: None
 
     @property
@@ -39,8 +40,15 @@ class Quiet:
         self.served += 1
         self.on_serve()
 
-    def publish(self, n: int) -> None:
-        self.published.append(n)
+    def has_news(self, n: int, keeps: bool) -> bool:
+        self.published.append((n, keeps))
+        return self.news
+
+    def publish_last(self) -> None:
+        self.published.append('last')
+
+    def publish_commands(self, commands) -> None:
+        self.published.append([(t_ns // 1_000_000, own['position']) for t_ns, own in commands])
 
     def parts(self) -> list[bytes]:
         return [b'parts']
@@ -146,7 +154,55 @@ def test_the_time_goes_on_with_the_ticks(bench, node, ticks):
     ticks.end()
     assert ticks.parts() == [b'parts'] and bench.actuator.t_ns == t_ns + 3_000_000
     ticks.publish()
-    assert node.published == [3]
+    assert node.published == [(3, True)]
+
+
+def commanded(bench: Bench, node: Quiet, ticks: SteadyTicks, **targets: float) -> None:
+    """Answer ticks 5, 6, ... with commands, and let the node publish."""
+    for k in range(5, 9):
+        bench.coordinator.send(encoded(k, target=targets.get(f'at_{k}')))
+    assert ticks.run(node, 5) is Ended.NOTHING and ticks.done == 4
+    ticks.end()
+    ticks.publish()
+
+
+def test_applied_setpoints_are_published_after_a_while(bench, node, ticks):
+    """Without a subscription: the first at once, the next ones together."""
+    commanded(bench, node, ticks, at_6=0.021)
+    t = bench.actuator.t_ns // 1_000_000
+    assert node.published == [(4, True), [(t - 2, 0.021)]]
+    node.published.clear()
+    commanded(bench, node, ticks, at_5=0.022, at_8=0.023)
+    assert node.published == [(4, True)]
+    ticks._kept_due_ns = 0
+    commanded(bench, node, ticks, at_7=0.024)
+    assert node.published[2:] == [[(t + 1, 0.022), (t + 4, 0.023), (t + 7, 0.024)]]
+    ticks.publish_kept()
+    assert len(node.published) == 3
+
+
+def test_what_is_kept_is_published_before_all_else(bench, node, ticks):
+    """The message of the last tick has its own command."""
+    ticks._kept_due_ns = 2**62
+    commanded(bench, node, ticks, at_5=0.021, at_6=0.022)
+    assert node.published == [(4, True)]
+    node.news = True
+    t = bench.actuator.t_ns // 1_000_000
+    commanded(bench, node, ticks, at_7=0.023, at_8=0.024)
+    assert node.published[1:] == [
+        (4, True), [(t - 3, 0.021), (t - 2, 0.022), (t + 3, 0.023)], 'last']
+    node.published.clear()
+    commanded(bench, node, ticks, at_8=0.025)
+    assert node.published == [(4, True), 'last']
+
+
+def test_setpoints_are_published_where_there_is_no_more_room(bench, node, ticks, monkeypatch):
+    ticks._kept_due_ns = 2**62
+    monkeypatch.setattr(module, 'MOST_KEPT', 2)
+    commanded(bench, node, ticks, at_5=0.021)
+    assert len(node.published) == 1
+    commanded(bench, node, ticks, at_5=0.022)
+    assert len(node.published) == 3
 
 
 def test_after_something_else_a_step_is_checked_first(bench, node, ticks):
