@@ -79,7 +79,8 @@ class SmartActuator:
         constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
-        self._saved = SavedRows(config.name, self.memory, self.has_link)
+        self.saved = SavedRows(config.name, self.memory, self.has_link)
+        """The rows that are its state."""
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = row_record(constants), row_record(self.memory.continuous)
         self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
@@ -124,7 +125,7 @@ class SmartActuator:
     def clear(self, position: float) -> None:
         """Set the state to zero at t = 0, before `put_at_rest`; a load of its own to a place."""
         self.t_ns = 0
-        self._saved.clear()
+        self.saved.clear()
         self.memory.feeds.fill(0)
         self.memory.fed.fill(0)
         self.accept(gains_command(self.tuning.reset(position)))
@@ -298,7 +299,7 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        state = self._saved.snapshot(self.t_ns)
+        state = self.saved.snapshot(self.t_ns)
         return self.t_ns.to_bytes(TIME_BYTES, 'little') + state + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -312,15 +313,15 @@ class SmartActuator:
             beyond its range; the actuator is then as before.
 
         """
-        expected = TIME_BYTES + self._saved.nbytes + self.tuning.nbytes
+        expected = TIME_BYTES + self.saved.nbytes + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
-        found = self._saved.read(snapshot, TIME_BYTES)
-        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
+        found = self.saved.read(snapshot, TIME_BYTES)
+        self.tuning.restore(snapshot[TIME_BYTES + self.saved.nbytes:])
         self.t_ns = t_ns
-        self._saved.restore(found)
+        self.saved.restore(found)
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:

@@ -147,6 +147,10 @@ def link_key(seed: int, name: str) -> int:
     return noise_key(seed, f'{name}/link')
 
 
+LARGEST_OF_LINE = {'first': SLOTS - 1, 'count': SLOTS, 'is_bad': 1}
+"""Largest number by field of a `LINE` in a saved state; the smallest is 0."""
+
+
 def refuse_states(states: Records, owner: str) -> None:
     """
     Refuse the `LINK_STATE` rows of a saved state that no link can have.
@@ -158,11 +162,11 @@ def refuse_states(states: Records, owner: str) -> None:
 
     """
     for line in (states['down'], states['up']):
-        for name, least, most in (('first', 0, SLOTS - 1), ('count', 0, SLOTS), ('is_bad', 0, 1)):
-            if not ((line[name] >= least) & (line[name] <= most)).all():
+        for name, most in LARGEST_OF_LINE.items():
+            if not ((line[name] >= 0) & (line[name] <= most)).all():
                 raise ConfigError(
                     f'{owner}: saved state has {name} = {line[name][0]} of a link, must be '
-                    f'{least} to {most}')
+                    f'0 to {most}')
 
 
 @kernel

@@ -36,6 +36,11 @@ class SavedRows:
         self.nbytes = sum(rows.nbytes for rows in self._rows)
         """Size of a snapshot."""
 
+    @property
+    def rows(self) -> Sequence[tuple[str, Records]]:
+        """Return name and rows of each part, as they follow each other in a snapshot."""
+        return list(zip(self._names, self._rows))
+
     def clear(self) -> None:
         """Set the whole state to zero."""
         for rows in self._rows:
@@ -51,7 +56,7 @@ class SavedRows:
             A number of the state is not finite.
 
         """
-        for name, rows in zip(self._names, self._rows):
+        for name, rows in self.rows:
             broken = broken_number(rows)
             if broken is not None:
                 raise SimulationDiverged(t_ns, f'{self._owner}.{name}: {broken[0]}', broken[1])
@@ -68,7 +73,7 @@ class SavedRows:
 
         """
         found = []
-        for name, rows in zip(self._names, self._rows):
+        for name, rows in self.rows:
             found.append(restored_rows(
                 snapshot, rows.dtype, len(rows), offset, f'{self._owner}.{name}'))
             offset += rows.nbytes

@@ -59,7 +59,7 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
     speed = ratings_of(plant_record(sound(sheet.plant))[0]).speed
     bounds = {
-        'position': _positions(sheet, length),
+        'position': positions(sheet),
         'velocity': Bounds(-speed, speed, f'{length}/s', 'the speed at full opening')}
     if isinstance(position, Impedance):
         bounds['effort'] = Bounds(
@@ -72,7 +72,9 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     return bounds
 
 
-def _positions(sheet: ActuatorSheet, length: str) -> Bounds:
+def positions(sheet: ActuatorSheet) -> Bounds:
+    """Return where an actuator can be."""
+    length = 'rad' if sheet.is_rotary else 'm'
     if sheet.is_endless:
         most = MOST_TURNS * sheet.plant.drive.stroke
         return Bounds(-most, most, length, f'{MOST_TURNS:g} turns')

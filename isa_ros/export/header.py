@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping
 from importlib.resources import files
 import zlib
 
-from isa_ros.core.version import VERSION
 from isa_ros.core.conditions import CONDITIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.core.timebase import FORCE_WINDOWS
+from isa_ros.core.version import VERSION
 
 _TYPES = '@TYPES@'
 _NUMBER_WIDTH = len('  double refused_requests;')

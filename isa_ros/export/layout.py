@@ -5,14 +5,16 @@ Arrays that share memory, as the states of an actuator and the same as floats, s
 block too. A block is filled from an image; the tables of its kernels get its own address.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
+import sys
 from typing import Any, NamedTuple
 
 from isa_ros.core.bound import arrays_of
 import numpy as np
 from numpy.typing import NDArray
 
-ALIGNED = 64    # bytes: the longest vectors of any processor
+ALIGNED = 16    # bytes, as malloc() gives them
 
 
 class Region(NamedTuple):
@@ -31,7 +33,7 @@ class Word(NamedTuple):
 
 
 class Layout:
-    """The places of the arrays of ``memories``, bytes from the begin of a block."""
+    """Places of the arrays of ``memories``, in their order: bytes from the begin of a block."""
 
     def __init__(self, memories: Iterable[Any]) -> None:
         self._arrays = [
@@ -39,15 +41,17 @@ class Layout:
         self._regions: list[Region] = []
         self.size = 0
         """Of the block, a multiple of `ALIGNED`."""
-        for first, end in sorted({_span(array) for array in self._arrays}):
-            last = self._regions[-1] if self._regions else None
-            if last is not None and first < last.end:
-                self._regions[-1] = last._replace(end=max(end, last.end))
+        joined: list[tuple[int, int]] = []
+        for first, end in sorted(map(_span, self._arrays)):
+            if joined and first < joined[-1][1]:
+                joined[-1] = joined[-1][0], max(end, joined[-1][1])
             else:
-                self._regions.append(Region(first, end, 0))
-        for k, region in enumerate(self._regions):
-            self._regions[k] = region._replace(place=self.size)
-            self.size += -(-(region.end - region.first) // ALIGNED) * ALIGNED
+                joined.append((first, end))
+        for own, _ in map(_span, self._arrays):
+            first, end = joined[bisect_right(joined, (own, sys.maxsize)) - 1]
+            if all(region.first != first for region in self._regions):
+                self._regions.append(Region(first, end, self.size))
+                self.size += -(-(end - first) // ALIGNED) * ALIGNED
 
     def place(self, array: NDArray[Any]) -> int:
         """

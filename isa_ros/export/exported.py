@@ -1,0 +1,145 @@
+"""What is exported of an actuator: its memory before its start, and the kernels over it."""
+
+from dataclasses import dataclass, replace
+import re
+from typing import Any, NamedTuple
+
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.requests import start_mode
+from isa_ros.actuator.ticking import group_tick, Ticked
+from isa_ros.config.assembly import bodies_in_form, surroundings_of, timing_of
+from isa_ros.core.signals import Records
+from isa_ros.errors import ConfigError
+from isa_ros.export.chosen import Chosen
+from isa_ros.export.starting import start_actuator, Started
+from isa_ros.reu.cascade import initial_gains
+import numpy as np
+
+PREFIX = 'isa_'
+TYPES = ('about', 'command', 'fed', 'feed', 'field', 'parameter', 'port', 'reply', 'sample',
+         'start')
+"""What types of the header are called behind `PREFIX`."""
+_WORD = re.compile(r'[a-z][a-z0-9_]*')
+
+
+class Called(NamedTuple):
+    """A kernel and its memory."""
+
+    function: Any
+    memory: Any
+
+    @property
+    def name(self) -> str:
+        """Return the name of its machine code."""
+        return f'kernel_{self.function.__name__}'
+
+
+@dataclass(frozen=True)
+class Exported:
+    """An actuator and its kernels; its state is zero, as before its start."""
+
+    chosen: Chosen
+    word: str
+    """What names in C begin with."""
+    actuator: SmartActuator
+    start: Records
+    """`START` at which it is created, (1,)."""
+    ticked: Ticked
+    """Memory of its tick."""
+    starting: Called
+    """What starts it."""
+    ticking: tuple[Called, ...]
+    """What makes a tick, one after the other."""
+    supply: Records | None
+    """`SUPPLY_SAMPLE` of its supply, (1,); None: its pressures come from outside."""
+
+    @property
+    def has_own_load(self) -> bool:
+        """Return whether its load is its own, and not the caller's."""
+        return self.chosen.config.load is not None
+
+    @property
+    def step_ns(self) -> int:
+        """Return the length of a tick."""
+        return self.chosen.run.step_ns
+
+    @property
+    def memories(self) -> tuple[Any, ...]:
+        """Return the memories of all kernels."""
+        return (self.starting.memory, *(own.memory for own in self.ticking))
+
+
+def word_of(actuator: str, given: str | None = None) -> str:
+    """
+    Return what the names of an actuator in C begin with: ``given``, or `PREFIX` and its name.
+
+    Raises
+    ------
+    ConfigError
+        It cannot be a name, or it is that of a type of the header.
+
+    """
+    own = re.sub('[^a-z0-9_]', '_', actuator.lower())
+    word = (own if own.startswith(PREFIX) else PREFIX + own) if given is None else given
+    if not _WORD.fullmatch(word):
+        raise ConfigError(
+            f'--name {word!r}, must be lower-case letters, digits and _, a letter first')
+    if word.removeprefix(PREFIX) in TYPES and word.startswith(PREFIX):
+        raise ConfigError(f'{word} is a type of the header; choose another name with --name')
+    return word
+
+
+def exported(
+        chosen: Chosen, *, name: str | None = None, with_supply: bool = False) -> Exported:
+    """
+    Return what is exported of an actuator; names in C begin with ``name``, see `word_of`.
+
+    With its supply, which feeds it alone: the pressures are then those of the supply.
+
+    Raises
+    ------
+    ConfigError
+        As `word_of`; or its supply is a circuit of lines and manifolds.
+
+    """
+    run, row = chosen.run, chosen.row
+    config = chosen.config
+    start = surroundings_of(run, bodies_in_form(run)).starts()[row:row + 1]
+    actuator = SmartActuator(config, timing_of(run))
+    actuator.clear(float(start['position'][0]))
+    own = actuator.ticked
+    own.ports[:] = 0
+    own.commands[:] = 0
+    own.clock[0] = 0
+    before, after, supply = _supply(chosen, own) if with_supply else ((), (), None)
+    return Exported(
+        chosen, word_of(config.name, name), actuator, start, own,
+        Called(start_actuator, _started(config, start, own)),
+        (*before, Called(group_tick, own), *after), supply)
+
+
+def _started(config: ActuatorConfig, start: Records, own: Ticked) -> Started:
+    """Return the memory of the start."""
+    mode = start_mode(config.name, config.mode, config.sheet.reu)
+    return Started(start, np.array(initial_gains(config.sheet.reu)),
+                   np.array([mode, int(config.auto_enable)], np.int64), own.memory)
+
+
+def _supply(chosen: Chosen, own: Ticked) -> tuple[
+        tuple[Called, ...], tuple[Called, ...], Records]:
+    """Return kernels of the supply before and after the actuator in a tick, and its sample."""
+    run, config = chosen.run, chosen.config
+    source = next(supply for supply in run.supplies if config.name in supply.feeds)
+    alone = replace(run, actuators=(config,), bodies=(), controllers=(), called=(),
+                    emergency_stops=(), supplies=(source.feeding([config.name]),))
+    surroundings = surroundings_of(alone)
+    memory = own.memory
+    parts = surroundings.parts(own.ports, memory.feeds, memory.replies, memory.fed)
+    if parts is None:
+        raise ConfigError(
+            f'{config.name}: its supply {source.name} is a circuit, must be constant or a pump '
+            'with an accumulator for an FMU; a library (--c) takes pressures from outside')
+    before, after = (
+        tuple(Called(part.bound.function, part.bound.memory) for part in side) for side in parts)
+    return before, after, surroundings.supplies[:1]

@@ -1,0 +1,114 @@
+"""An actuator as a shared library of C: its kernels, and the text beside them."""
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+import re
+import shutil
+import subprocess
+import tempfile
+
+from isa_ros.core.kernel import Entry, entry_of
+from isa_ros.core.kinds import kind_of
+from isa_ros.core.objects import object_of, Target, TARGETS
+from isa_ros.errors import ConfigError
+from isa_ros.export.exported import Exported
+from isa_ros.export.header import filled, header, source
+from isa_ros.export.tables import tables
+
+EXAMPLES = ('example.c', 'example.cpp')
+FLAGS = ('-std=c11', '-O2', '-fPIC', '-fvisibility=hidden', '-ffreestanding',
+         '-fno-stack-protector', '-shared', '-nostdlib', '-Wl,--no-undefined',
+         '-Wl,-z,noexecstack')
+"""Of the compiler, to make a library that needs no other."""
+_FUNCTION = re.compile(r'^ISA_EXPORT .*\bISA\((\w+)\)', re.MULTILINE)
+
+
+def kernels_of(own: Exported, target: Target) -> bytes:
+    """Return the object of the kernels of an actuator; those of all are the same."""
+    return _object(tuple({
+        one.name: entry_of(one.function, kind_of(one.memory))
+        for one in (own.starting, *own.ticking)}.items()), target)
+
+
+@cache
+def _object(kernels: tuple[tuple[str, Entry], ...], target: Target) -> bytes:
+    """Return the object of kernels by their names."""
+    return object_of(dict(kernels), target)
+
+
+def texts(own: Exported) -> Mapping[str, str]:
+    """Return the text files of an actuator's library by their names, examples among them."""
+    word, config = own.word, own.chosen.config
+    about = f'the actuator {config.name} of {own.chosen.run.source}, a {config.model}'
+    code = filled(source('actuator.c'), {'NAME': word})
+    return {
+        f'{word}.h': header(word, about), f'{word}.c': code,
+        f'{word}_tables.h': tables(own), f'{word}.map': _symbols(word, code),
+        **{name: filled(source(name), {'NAME': word}) for name in EXAMPLES}}
+
+
+def _symbols(word: str, code: str) -> str:
+    """Return the list of what is seen of a library, for its linker."""
+    names = ' '.join(f'{word}_{name};' for name in _FUNCTION.findall(code))
+    return f'{{ global: {names} local: *; }};\n'
+
+
+def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str, bytes]:
+    """
+    Return the files of an actuator's library by name.
+
+    Raises
+    ------
+    ConfigError
+        There is no such C compiler, or it fails, with its first line.
+
+    """
+    found = compiler_of(compiler)
+    word = own.word
+    files = {name: text.encode() for name, text in texts(own).items()}
+    files[f'{word}_kernels.o'] = kernels_of(own, target)
+    with tempfile.TemporaryDirectory() as directory:
+        for name, content in files.items():
+            Path(directory, name).write_bytes(content)
+        name = f'lib{word}.so'
+        done = subprocess.run(
+            [found, *FLAGS, f'-Wl,--version-script={word}.map', f'-Wl,-soname,{name}', '-o', name,
+             f'{word}.c', f'{word}_kernels.o'], cwd=directory, capture_output=True, text=True)
+        if done.returncode:
+            lines = done.stderr.splitlines() or [f'exit code {done.returncode}']
+            first = next((line for line in lines if 'error' in line), lines[0])
+            raise ConfigError(f'{name}: {compiler} cannot build it: {first}')
+        files[name] = Path(directory, name).read_bytes()
+    return files
+
+
+def compiler_of(name: str) -> str:
+    """
+    Return the path of a C compiler.
+
+    Raises
+    ------
+    ConfigError
+        There is none.
+
+    """
+    found = shutil.which(name)
+    if found is None:
+        raise ConfigError(f'--compiler {name}: no such C compiler, which builds the library')
+    return found
+
+
+def target_of(name: str) -> Target:
+    """
+    Return a target by its name.
+
+    Raises
+    ------
+    ConfigError
+        There is none of this name.
+
+    """
+    if name not in TARGETS:
+        raise ConfigError(f'--target {name}, valid: {", ".join(TARGETS)}')
+    return TARGETS[name]
