@@ -1,0 +1,143 @@
+"""The first call of `./isa`: its environment is made with progress, by a pip of the test."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import pty
+import select
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PINS = '# what is needed\none==1.0\ntwo==2.0\nthree==3.0; python_version < "3"\n\nfour==4.0\n'
+
+PYTHON = r"""#!/bin/bash
+# A python3 with a `venv`, a `pip` of three packages that waits for the test, and an `isa_ros`.
+here=$(dirname "$0")
+step() { until [[ -e $here/../../$1 ]]; do sleep 0.02; done; }
+case "$*" in
+    '-c import sys, venv;'*) ;;
+    '-m venv '*) mkdir -p "$3/bin" "$3/lib/python3.9/site-packages/pip.dist-info"
+        cp "$0" "$3/bin/python" ;;
+    *--editable*) ;;
+    *'pip install'*)
+        site=$here/../lib/python3.9/site-packages
+        echo "Ignoring three: markers 'python_version < \"3\"' don't match your environment"
+        echo 'Collecting one==1.0 (from -r requirements.txt (line 2))'
+        echo '  Downloading one-1.0-py3-none-any.whl.metadata (2 kB)'
+        step a
+        echo 'Collecting two==2.0'; echo 'Collecting four==4.0'
+        echo 'Downloading one-1.0-py3-none-any.whl (6 kB)'
+        echo '  Using cached two-2.0-py3-none-any.whl (1 kB)'
+        step b
+        echo 'Installing collected packages: one, two, four'
+        mkdir "$site/one.dist-info"
+        step c
+        [[ ! -e $here/../../fails ]] || { echo 'ERROR: no space'; exit 1; }
+        echo 'Successfully installed' ;;
+    *) echo "ran $*" ;;
+esac
+"""
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """Return a clone of `isa` alone, with the python3 of the test first in its PATH."""
+    shutil.copy(ROOT / 'isa', tmp_path / 'isa')
+    (tmp_path / 'requirements.txt').write_text(PINS)
+    (tmp_path / 'bin').mkdir()
+    python = tmp_path / 'bin' / 'python3'
+    python.write_text(PYTHON)
+    python.chmod(0o755)
+    return tmp_path
+
+
+class Call:
+    """`./isa words` with its standard error on a terminal or in a pipe, read as it comes."""
+
+    def __init__(self, clone: Path, error: int, write_end: int) -> None:
+        self._error, self.text = error, ''
+        self.process = subprocess.Popen(
+            [clone / 'isa', 'words'], cwd=clone, stdout=subprocess.PIPE, stderr=write_end,
+            text=True, env={'PATH': f'{clone / "bin"}:{os.environ["PATH"]}', 'TERM': 'dumb'},
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        os.close(write_end)
+
+    def wait_for(self, text: str) -> None:
+        """Read until a text is there, then forget what was before its end."""
+        deadline = time.monotonic() + 60.0
+        while text not in self.text:
+            assert time.monotonic() < deadline, f'{text!r} not in {self.text!r}'
+            if select.select([self._error], [], [], 0.1)[0]:
+                self.text += os.read(self._error, 4096).decode()
+        self.text = self.text.partition(text)[2]
+
+
+@contextmanager
+def called(clone: Path, on_terminal: bool) -> Iterator[Call]:
+    """Run the first call while the context lasts."""
+    error, write_end = pty.openpty() if on_terminal else os.pipe()
+    call = Call(clone, error, write_end)
+    try:
+        yield call
+    finally:
+        call.process.kill()
+        call.process.wait()
+        os.close(error)
+
+
+@pytest.mark.parametrize('on_terminal', [True, False])
+def test_pip_is_shown_with_its_phases_and_totals(clone: Path, on_terminal: bool) -> None:
+    """What a marker excludes is not among the total; the second call is silent."""
+    with called(clone, on_terminal) as call:
+        call.wait_for('installing requirements.txt, once: collecting 1 of 3 packages')
+        (clone / 'a').touch()
+        # A pipe has a line for each phase, with the numbers that it began with.
+        call.wait_for('downloading 2 of 3 packages' if on_terminal else 'downloading ')
+        (clone / 'b').touch()
+        call.wait_for('installing 1 of 3 packages')
+        (clone / 'c').touch()
+        call.wait_for('installing requirements.txt, once: done in ')
+        call.wait_for('installing isa_ros: done in ')
+        assert call.process.wait(60) == 0
+        assert call.process.stdout is not None
+        assert call.process.stdout.read() == 'ran -m isa_ros words\n'
+    again = subprocess.run([clone / 'isa', 'words'], capture_output=True, text=True, check=True)
+    assert not again.stderr
+
+
+def test_on_a_terminal_nothing_is_silent_for_two_seconds(clone: Path) -> None:
+    """While pip waits its line is written again, with the seconds: two of them differ by one."""
+    with called(clone, on_terminal=True) as call:
+        call.wait_for('collecting 1 of 3 packages, 1 s')
+        call.wait_for('collecting 1 of 3 packages, 2 s')
+
+
+def test_a_pip_that_fails_is_3_with_the_end_of_its_log(clone: Path) -> None:
+    for name in ('a', 'b', 'c', 'fails'):
+        (clone / name).touch()
+    with called(clone, on_terminal=False) as call:
+        call.wait_for('ERROR: no space')
+        call.wait_for(f'cannot install requirements.txt: the log is {clone}/.venv/pip.log')
+        assert call.process.wait(60) == 3
+    assert not (clone / '.venv' / 'requirements.txt').exists()
+
+
+def test_an_interrupt_ends_pip_too(clone: Path) -> None:
+    """What runs in the background of a script would ignore it."""
+    with called(clone, on_terminal=False) as call:
+        call.wait_for('collecting 1 of 3 packages')
+        pip = subprocess.run(
+            ['pgrep', '-P', str(call.process.pid), '-f', 'pip install'], check=True,
+            capture_output=True, text=True).stdout.split()
+        call.process.send_signal(signal.SIGINT)
+        call.wait_for('isa: interrupted')
+        assert call.process.wait(60) == 130
+        deadline = time.monotonic() + 60.0
+        while any(Path(f'/proc/{own}').exists() for own in pip):
+            assert time.monotonic() < deadline
