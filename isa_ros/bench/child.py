@@ -11,24 +11,28 @@ import isa_ros
 
 Ended = subprocess.CompletedProcess[str]
 
-_ROOT = Path(isa_ros.__file__).parents[1]
+ROOT = Path(isa_ros.__file__).parents[1]
+"""The checkout, or the packages of an installation."""
 
 
-def environment(added: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return this process's environment, with this package on the path of Python."""
-    path = [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]
+def environment(added: Mapping[str, str] | None = None, root: Path = ROOT) -> dict[str, str]:
+    """Return this process's environment, with the packages of ``root`` first in Python's path."""
+    path = [str(root), *filter(None, [os.environ.get('PYTHONPATH')])]
     return {**os.environ, 'PYTHONPATH': os.pathsep.join(path), **(added or {})}
 
 
-def run_module(module: str, arguments: Sequence[str], timeout_s: float) -> Ended:
+def run_module(
+        module: str, arguments: Sequence[str], timeout_s: float, root: Path = ROOT) -> Ended:
     """
     Run ``python -m module STARTED *arguments`` to its end and return its output.
 
-    STARTED is the monotonic clock just before; after ``timeout_s`` the process is killed.
+    STARTED is the monotonic clock just before; after ``timeout_s`` the process is killed. The
+    module is that of ``root``.
     """
     return subprocess.run(
-        [sys.executable, '-m', module, str(time.monotonic()), *arguments], env=environment(),
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [sys.executable, '-m', module, str(time.monotonic()), *arguments],
+        env=environment(root=root), cwd=root, stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         errors='replace', timeout=timeout_s)
 
 

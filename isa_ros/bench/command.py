@@ -1,11 +1,12 @@
 """The command `isa bench`: select groups, measure them, and write the rows."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 import sys
 
 from isa_ros.bench import page
-from isa_ros.bench.groups import BenchGroup, groups
+from isa_ros.bench.groups import BenchGroup, groups, Wanted
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section
 from isa_ros.bench.parts import misfits
@@ -17,9 +18,12 @@ from isa_ros.text.page import refuse_a_part, write_wanted_page
 from isa_ros.text.progress import counted, Progress
 
 
-def chosen(only: Sequence[str] | None) -> tuple[BenchGroup, ...]:
+def chosen(
+        only: Sequence[str] | None, wanted: Wanted = Wanted()) -> tuple[BenchGroup, ...]:
     """
     Return the groups named in ``only``, in their own order; for None all that can be measured.
+
+    Those on request are among them if ``wanted``.
 
     Raises
     ------
@@ -27,7 +31,7 @@ def chosen(only: Sequence[str] | None) -> tuple[BenchGroup, ...]:
         A group does not exist, or cannot be measured here.
 
     """
-    by_name = {group.name: group for group in groups()}
+    by_name = {group.name: group for group in groups(wanted)}
     for name in only or ():
         if name not in by_name:
             raise ConfigError(f'--only {name}: no such group; {alternatives(name, by_name)}')
@@ -39,7 +43,7 @@ def chosen(only: Sequence[str] | None) -> tuple[BenchGroup, ...]:
 
 def bench(
         json_file: Path | None = None, only: Sequence[str] | None = None,
-        out: Path | None = None) -> Report:
+        out: Path | None = None, wanted: Wanted = Wanted()) -> Report:
     """
     Measure, print each row when it is ready, and write JSON or the page if requested.
 
@@ -53,16 +57,17 @@ def bench(
         written.
 
     """
-    measured = chosen(only)
+    measured = chosen(only, wanted)
     if out is not None:
         refuse_a_part(out / PAGE, only)
     here = machine()
     print(f'{here.summary}\n{HEAD}')
     if only is None:
-        for group in groups():
+        for group in groups(wanted):
             if reason := group.missing():
                 print(f'{group.name}: not measured, {reason}')
-    report = measured_report(measured, here, counted(sys.stderr, 'runs'))
+    report = replace(measured_report(measured, here, counted(sys.stderr, 'runs')),
+                     options=wanted.options)
     if json_file is not None:
         write_tree(page.as_tree(report), json_file)
     wrong = misfits(row for section in report.sections for row in section.rows)

@@ -11,6 +11,7 @@ import time
 
 import isa_ros
 from isa_ros.bench.crane import crane, crane_model, CRANE_NAMES, crane_run
+from isa_ros.bench.parts import left_of
 from isa_ros.bench.row import Row
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.simulation import Simulation
@@ -20,6 +21,8 @@ from numpy.typing import NDArray
 
 REPEATS = 400       # of each part
 _SHARE = 10         # %
+LEFT = 0.35
+"""Of a whole tick, that port, actuators and advance may leave: Python of the tick itself."""
 _MASS, _STIFFNESS, _PLACE = 100.0, 1e5, 0.1     # kg, N/m, m
 
 Floats = NDArray[np.float64]
@@ -61,22 +64,27 @@ def masses_rows() -> list[Row]:
     ports, replies = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_REPLY)
     return _rows('masses in numpy', {
         'a port': lambda: body.ports(ports), 'advance of the body': lambda: body.advance(replies),
-        'a whole tick': own.step})
+        'three actuators': lambda: own.group.advance(own.loop.rows.ports),
+        'a whole tick': own.step}, 'a port')
 
 
 def _mounting() -> isa_ros.Mounting:
     return isa_ros.Mounting(CRANE_NAMES, np.arange(3), np.full(3, _PLACE), [False] * 3, 1e-3, 0)
 
 
-def _rows(of: str, parts: Mapping[str, Callable[[], object]]) -> list[Row]:
+def _rows(of: str, parts: Mapping[str, Callable[[], object]], port: str) -> list[Row]:
+    """Return the time of each part; the last is a whole tick, ``port`` that of its body."""
     found: dict[str, list[int]] = {name: [] for name in parts}
     for _ in range(REPEATS):
         for name, part in parts.items():
             before = time.thread_time_ns()
             part()
             found[name].append(time.thread_time_ns() - before)
-    return [Row(f'{of}: {name}', float(np.percentile(times, _SHARE)) * 1e-3, 'us')
-            for name, times in found.items()]
+    rows = {name: Row(f'{of}: {name}', float(np.percentile(times, _SHARE)) * 1e-3, 'us')
+            for name, times in found.items()}
+    *_, whole = rows.values()
+    covered = [rows[name] for name in (port, 'advance of the body', 'three actuators')]
+    return [*rows.values(), left_of(whole, covered, LEFT).under(whole)]
 
 
 def crane_rows() -> list[Row]:
@@ -115,4 +123,4 @@ def crane_rows() -> list[Row]:
         'advance of the body': lambda: bodies[False].advance(replies),
         'three actuators': lambda: own.group.advance(own.loop.rows.ports),
         'a whole tick, look-ahead': own.step}
-    return _rows('crane in MuJoCo', parts)
+    return _rows('crane in MuJoCo', parts, 'a port, look-ahead')

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 import sys
+from typing import NamedTuple
 
 import isa_ros
-from isa_ros.bench import leg, memory, startup
+from isa_ros.bench import against, first_run, leg, memory, over_kernels, startup
 from isa_ros.bench.door import door_rows
 from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.page import BenchDrawing
@@ -47,24 +48,57 @@ GROUPS = (
     BenchGroup('plant', 'One actuator, one core', alone(plant_rows)),
     BenchGroup('cylinder', 'A valve-driven cylinder with a known solution', alone(cylinder_rows)),
     BenchGroup('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
+    BenchGroup('kernels', 'A tick over its kernels alone', over_kernels.kernel_rows,
+               lambda: over_kernels.SPECS),
     BenchGroup('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
     BenchGroup('door', 'A tick with an external body', alone(door_rows)),
     BenchGroup('robots', 'Quadrupeds that trot, without ROS', alone(robot_rows)),
     BenchGroup('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
+    BenchGroup('trot', 'The quadruped that trots, in processes', leg.quadruped_rows,
+               lambda: (leg.TROTTING,)),
     BenchGroup('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
     BenchGroup('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),
 )
 
 
-def groups() -> tuple[BenchGroup, ...]:
+class Wanted(NamedTuple):
+    """Groups that are measured on request only."""
+
+    against: str | None = None
+    """Revision to compare with."""
+    first_run: bool = False
+    """Whether to install a wheel."""
+
+    @property
+    def options(self) -> str:
+        """Return the options of the command, each after a space."""
+        against = f' --against {self.against}' if self.against else ''
+        return against + (' --first-run' if self.first_run else '')
+
+
+def groups(wanted: Wanted = Wanted()) -> tuple[BenchGroup, ...]:
     """Return all groups, those of this package first."""
+    return GROUPS + _on_request(wanted) + _of_benchmarks()
+
+
+def _on_request(wanted: Wanted) -> tuple[BenchGroup, ...]:
+    return (
+        BenchGroup('against', f'This checkout against {wanted.against}, in turn',
+                   alone(lambda: against.against_rows(wanted.against or '')),
+                   missing=lambda: against.missing(wanted.against)),
+        BenchGroup('first_run', 'The first run of an installed wheel',
+                   alone(first_run.first_run_rows),
+                   missing=lambda: first_run.missing(wanted.first_run)))
+
+
+def _of_benchmarks() -> tuple[BenchGroup, ...]:
     if not (CHECKOUT / BENCHMARKS / 'peers').is_dir():
-        return GROUPS + tuple(
+        return tuple(
             BenchGroup(name, '', alone(list), missing=_needs_a_checkout) for name in OF_BENCHMARKS)
     if str(CHECKOUT) not in sys.path:  # an editable installation puts its packages there only
         sys.path.append(str(CHECKOUT))
     added: tuple[BenchGroup, ...] = import_module(f'{BENCHMARKS}.groups').GROUPS
-    return GROUPS + added
+    return added
 
 
 def _needs_a_checkout() -> str:

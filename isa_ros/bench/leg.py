@@ -1,5 +1,5 @@
 """
-The leg's drop, recorded: three actuators in separate processes, and in one.
+The leg's drop, recorded: three actuators in separate processes, and in one; a quadruped's trot.
 
 Limits of a run are found from the laps of its coordinator and the processor time of its processes.
 """
@@ -9,15 +9,21 @@ import os
 from statistics import median
 
 from isa_ros.bench.floor import pipe_exchange, WORKERS
+from isa_ros.bench.parts import divided
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
-from isa_ros.bench.spec import LEG, Measured, median_of, ONE_PROCESS, PROCESSES, Spec
-from isa_ros.bench.tick import actuators_alone
+from isa_ros.bench.spec import (
+    LEG, Measured, median_of, ONE_PROCESS, parts_of_median, PROCESSES, QUADRUPED, Spec)
 from isa_ros.text.table import digits
 
 IN_PROCESSES = Spec(LEG, PROCESSES, 2000)
 IN_ONE_PROCESS = Spec(LEG, ONE_PROCESS, 3000)
+TROTTING = Spec(QUADRUPED, PROCESSES, 4000)
 SPECS = (IN_PROCESSES, IN_ONE_PROCESS)
+SHARE = 0.1
+"""Of a tick, that the laps of its coordinator may leave, or be too much."""
+_ALL_CORES = 1.02
+"""Of all cores, that a run can use; clocks of processes are read one after another."""
 _AIMS = {IN_PROCESSES: Aim(1500.0), IN_ONE_PROCESS: Aim(4000.0)}
 
 
@@ -34,27 +40,18 @@ def leg_rows(outcomes: Outcomes) -> list[Row]:
         runs = outcomes.of(spec)
         speed = speed_row(f'leg, {spec.way}', runs).aiming(_AIMS[spec])
         below = tick_rows(runs, pipe)
-        limit = profile(runs)
-        if spec == IN_ONE_PROCESS:
-            spent = _actuator_phase(runs)
-            below += [Row(f'of its actuators {part}', value * 1e6, 'us', 'that phase',
-                          value / sum(spent.values())) for part, value in spent.items()]
-            limit += f'; of its actuators: {in_parts(spent, 1e6, "us")}'
-        rows.append(speed.noting(limit) if speed.is_reached is False else speed)
+        rows.append(speed.noting(profile(runs)) if speed.is_reached is False else speed)
         rows += [row.under(speed) for row in below]
     return rows
 
 
-def _actuator_phase(runs: Sequence[Measured]) -> dict[str, float]:
-    """
-    Return the parts of the phase of the actuators in one process, in s.
-
-    Plant and REU are measured in this process, without ROS; the rest is that of ROS. It is
-    negative where the machine was slower for the one than for the other.
-    """
-    own = actuators_alone()
-    phase = median(run.phases['actuators'] for run in runs)
-    return {'plant + REU': own, 'ROS: publishing and receiving': phase - own}
+def quadruped_rows(outcomes: Outcomes) -> list[Row]:
+    """Return the speed of the quadruped's trot in processes, and the parts of its tick."""
+    runs = outcomes.of(TROTTING)
+    speed = speed_row(f'{TROTTING}, recording, with its controller', runs).aiming(Aim(1000.0))
+    below = tick_rows(runs, pipe_exchange())
+    speed = speed.noting(profile(runs)) if speed.is_reached is False else speed
+    return [speed, *(row.under(speed) for row in below)]
 
 
 def speed_row(name: str, runs: Sequence[Measured]) -> Row:
@@ -68,13 +65,14 @@ def tick_rows(runs: Sequence[Measured], pipe: float) -> list[Row]:
     row = Row.of('a tick', [run.tick * 1e6 for run in runs], 'us')
     tick = row.number * 1e-6
     rows = [row.against('pipe floor', pipe / tick)]
-    rows += [Row(f'of it {phase}', spent * 1e6, 'us', 'that tick', spent / tick)
-             for phase, spent in median_of([run.phases for run in runs]).items()]
+    rows += divided(row, parts_of_median(
+        [run.tick for run in runs], [run.phases for run in runs]), SHARE)
     rows += [Row(f'processor time of a tick, {part}', spent * 1e6, 'us', 'that tick',
                  spent / tick)
              for part, spent in median_of([run.processor for run in runs]).items()]
     share = busy(runs)
-    return [*rows, Row(f'{cores()} cores in use', 100.0 * share, '%', 'all of them', share)]
+    return [*rows, Row(f'{cores()} cores in use', 100.0 * share, '%', 'all of them', share,
+                       most_share=_ALL_CORES)]
 
 
 def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:

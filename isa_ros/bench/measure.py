@@ -43,7 +43,8 @@ def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
     from isa_ros.bench.rigs import request_of
     from isa_ros.bench.spec import IMPORTS, INTERPRETER
     from isa_ros.bench.watch import Watch
-    watch = Watch({INTERPRETER: entered - started, IMPORTS: time.monotonic() - entered})
+    watch = Watch(
+        {INTERPRETER: entered - started, IMPORTS: time.monotonic() - entered}, started)
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         _run(spec, watch.request(request_of(spec, Path(directory))), watch.report)
     return watch.measured(spec.ticks)

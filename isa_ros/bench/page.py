@@ -18,7 +18,7 @@ _HEAD = """# How fast, and what limits it
 
 Measured and written, with its figure, in one call of
 
-    ./isa bench --out docs
+    ./isa bench{options} --out docs
 
 on
 
@@ -57,6 +57,8 @@ class Report:
     machine: Machine
     sections: tuple[Section, ...]
     outcomes: Outcomes
+    options: str = ''
+    """Of the call, each after a space."""
 
 
 def as_lines(section: Section) -> list[str]:
@@ -90,7 +92,8 @@ def as_tree(report: Report) -> dict[str, Any]:
 
 def write_page(report: Report, directory: Path) -> list[Path]:
     """Write bench.md, with the figures of the groups."""
-    page = Page(PAGE, _HEAD.format(machine=report.machine.summary))
+    page = Page(PAGE, _HEAD.format(
+        machine=report.machine.summary, options=report.options))
     _aims(page, report)
     for section in report.sections:
         page.section(section.title)

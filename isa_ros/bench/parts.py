@@ -14,6 +14,7 @@ from isa_ros.bench.row import Row
 
 NOT_COVERED = 'not covered'
 ROUNDS = 9
+_SCALES = {'us': 1e6, 's': 1.0}
 
 
 def _nothing() -> None:
@@ -25,6 +26,8 @@ class Work(NamedTuple):
 
     run: Callable[[], object]
     prepare: Callable[[], object] = _nothing
+    clock: Callable[[], float] = time.thread_time
+    """Processor time in s: of this thread, or `time.process_time` with that of its others."""
 
 
 def divided(
@@ -32,15 +35,21 @@ def divided(
     """
     Return a row of each part, and one of what the parts do not cover; negative: they overlap.
 
-    ``whole`` is in us, ``parts`` are in s; ``share`` is the largest one of the whole that may be
-    left, or be too much.
+    ``whole`` is in us or s, ``parts`` are in s; ``share`` is the largest one of the whole that
+    may be left, or be too much.
     """
-    rows = [Row(f'{prefix}{name}', 1e6 * value, 'us', whole.name, 1e6 * value / whole.number)
-            for name, value in parts.items()]
-    left = whole.number - sum(row.number for row in rows)
-    rows.append(Row(f'{prefix}{NOT_COVERED}', left, 'us', whole.name, left / whole.number,
-                    most_share=share))
+    scale = _SCALES[whole.unit]
+    rows = [Row(f'{prefix}{name}', scale * value, whole.unit, whole.name,
+                scale * value / whole.number) for name, value in parts.items()]
+    rows.append(left_of(whole, rows, share, prefix))
     return [row.under(whole) for row in rows]
+
+
+def left_of(whole: Row, parts: Iterable[Row], share: float, prefix: str = 'of it ') -> Row:
+    """Return the row of what ``parts``, in the unit of ``whole``, do not cover of it."""
+    left = whole.number - sum(row.number for row in parts)
+    return Row(f'{prefix}{NOT_COVERED}', left, whole.unit, whole.name, left / whole.number,
+               most_share=share)
 
 
 def misfits(rows: Iterable[Row]) -> list[str]:
@@ -53,16 +62,17 @@ def misfits(rows: Iterable[Row]) -> list[str]:
 
 def in_turn(works: Mapping[str, Work], per: int) -> dict[str, float]:
     """
-    Return the processor time of this thread for one of the ``per`` pieces of each work, s.
+    Return the processor time for one of the ``per`` pieces of each work, s, by its clock.
 
     Medians of rounds in alternating order, after a warm-up: what slows the machine down meets all.
     """
     found: dict[str, list[float]] = {name: [] for name in works}
     for round_ in range(1 + ROUNDS):
         for name in list(works)[::-1] if round_ % 2 else works:
-            works[name].prepare()
-            start = time.thread_time()
-            works[name].run()
+            work = works[name]
+            work.prepare()
+            start = work.clock()
+            work.run()
             if round_:
-                found[name].append((time.thread_time() - start) / per)
+                found[name].append((work.clock() - start) / per)
     return {name: median(times) for name, times in found.items()}

@@ -3,12 +3,14 @@
 from copy import deepcopy
 from pathlib import Path
 
-from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
+from isa_ros.bench.spec import LEG, ONE_PROCESS, QUADRUPED, Spec
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.run.options import Request
 
 TICK_S = 1e-3
+SHIPPED = {LEG: 'drop.yaml', QUADRUPED: 'quadruped_trot.yaml'}
+"""Scenarios of the plants that are shipped run files."""
 _PATTERN: tuple[tuple[str, Tree], ...] = (
     ('haa', {
         'model': 'smart_manifold', 'load': {'kind': 'wheel'}, 'initial_position_deg': 50.0}),
@@ -34,8 +36,8 @@ def rigs_file(n_actuators: int) -> str:
 
 def config_of(plant: str, directory: Path) -> Path:
     """Return the run file of a spec's plant, which may be new in ``directory``."""
-    if plant == LEG:
-        return find('leg.yaml', CONFIG)
+    if plant in SHIPPED:
+        return find(f'{plant}.yaml', CONFIG)
     config = directory / f'rigs_{plant}.yaml'
     config.write_text(rigs_file(int(plant)), encoding='utf-8')
     return config
@@ -45,7 +47,7 @@ def request_of(spec: Spec, directory: Path) -> Request:
     """Return the request of a spec's run; its files are in ``directory``."""
     return Request(
         config=config_of(spec.plant, directory),
-        scenario=find('drop.yaml', SCENARIOS) if spec.plant == LEG else None,
+        scenario=find(SHIPPED[spec.plant], SCENARIOS) if spec.plant in SHIPPED else None,
         out=directory / 'bag',
         duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0,
         is_alone=True)

@@ -7,17 +7,18 @@ import time
 from typing import Any
 
 from isa_ros.bag.writer import BagWriter
-from isa_ros.bench.row import Aim, Row, seconds
-from isa_ros.core.signals import LOAD_PORT
+from isa_ros.bench.parts import divided, in_turn, Work
+from isa_ros.bench.row import Aim, Row
 from isa_ros.run.output import Outlets, packer_of, RunOutput
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
-import numpy as np
 
 TICKS = 300
 ROUNDS = 3
+SHARE = 0.25
+"""Of a tick that Python drives, that its parts may leave: the loop itself."""
 BEGUN = 800     # ticks, after which the robots trot
 ROBOTS = (1, 2, 4)
 TROT = 'isa_ros.examples.quadruped.trot:Trot'
@@ -82,34 +83,27 @@ def _recorded_ticks(run: Run) -> float:
 
 
 def _parts(run: Run) -> list[Row]:
-    """Return the parts of a tick of one quadruped, in processor time."""
+    """Return a tick of one quadruped that Python drives, and its parts, in processor time."""
     simulation = _begun(run)
-    whole = _cpu(simulation.step)
-    surroundings, loop = simulation.surroundings, simulation.loop
-    ports = np.zeros(len(simulation.names), LOAD_PORT)
-    snapshot = simulation.snapshot()
-    surroundings.ports(ports)
-    parts = {'the kernel of its actuators': _cpu(lambda: simulation.group.advance(ports))}
-    simulation.restore(snapshot)
-    parts['its body: ports'] = _cpu(lambda: surroundings.ports(ports))
-    parts['its body: a tick'] = _cpu(lambda: surroundings.advance(loop.rows.replies))
-    simulation.restore(snapshot)
-    parts['its controller'] = _cpu(lambda: loop.transport.send(loop.ticks, loop.rows))
-    simulation.restore(snapshot)
+    loop, snapshot = simulation.loop, simulation.snapshot()
     packer = packer_of(run.configuration, loop.rows.published)
+    simulation.step()
+
+    def many(work: Callable[[], object]) -> Work:
+        return Work(lambda: [work() for _ in range(TICKS)],
+                    lambda: simulation.restore(snapshot))
 
     def pack() -> None:
         packer.pack(loop.t_ns, loop.t_ns, {})
         packer.all_messages()
-    parts['its messages'] = _cpu(pack)
-    return [Row('a tick in memory', whole * 1e6, 'us'), *(
-        Row(f'of it {name}' if name != 'its messages' else 'beside it, its messages',
-            value * 1e6, 'us', 'that tick', value / whole) for name, value in parts.items())]
-
-
-def _cpu(work: Callable[[], object]) -> float:
-    """Return the processor time of one of `TICKS` calls, s."""
-    def many() -> None:
-        for _ in range(TICKS):
-            work()
-    return seconds(many, TICKS, of_cpu=True)
+    times = in_turn({
+        'whole': many(simulation.step),
+        'the kernel of its actuators': many(
+            lambda: simulation.group.advance(loop.rows.ports)),
+        'its body: ports': many(lambda: simulation.surroundings.ports(loop.rows.ports)),
+        'its body: a tick': many(lambda: simulation.surroundings.advance(loop.rows.replies)),
+        'its controller': many(lambda: loop.transport.send(loop.ticks, loop.rows)),
+        'messages': many(pack)}, TICKS)
+    messages = Row('beside it, its messages', 1e6 * times.pop('messages'), 'us')
+    whole = Row('a tick in memory', 1e6 * times.pop('whole'), 'us')
+    return [whole, *divided(whole, times, SHARE), messages]

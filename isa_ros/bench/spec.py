@@ -6,7 +6,7 @@ import json
 from statistics import median
 from typing import NamedTuple
 
-LEG = 'leg'
+LEG, QUADRUPED = 'leg', 'quadruped'
 PROCESSES, ONE_PROCESS = 'processes', 'one process'
 ROUNDS = 3
 COORDINATOR, ACTUATORS = 'coordinator', 'actuators'
@@ -21,7 +21,7 @@ class Spec:
     """One run: plant, way of running, and number of ticks of 1 ms."""
 
     plant: str
-    """`LEG`, the leg's drop, or the number of actuators with their own loads."""
+    """`LEG`, its drop; `QUADRUPED`, its trot; or the number of actuators with own loads."""
     way: str
     """`PROCESSES`, `ONE_PROCESS`, or the name of a peer of `benchmarks`."""
     ticks: int
@@ -43,7 +43,7 @@ class Spec:
 
     def __str__(self) -> str:
         """Return a short description for progress and messages."""
-        what = 'the leg' if self.plant == LEG else (
+        what = f'the {self.plant}' if self.plant in (LEG, QUADRUPED) else (
             f'{self.plant} actuator{"" if self.plant == "1" else "s"}')
         return f'{what}, {self.way}'
 
@@ -65,7 +65,9 @@ class Measured:
 
     ticks_per_s: float
     startup: Mapping[str, float]
-    """By part, in order; the sum is the time from the start of the process to tick 0."""
+    """By part, in order; together nearly `to_tick_0`."""
+    to_tick_0: float
+    """Time from the start of the process to tick 0."""
     phases: Mapping[str, float]
     """Time of a tick by phase of the coordinator."""
     processor: Mapping[str, float]
@@ -99,3 +101,16 @@ class Failed:
 def median_of(many: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """Return the median of each part over several runs, in the order of the first."""
     return {part: median(each[part] for each in many if part in each) for part in many[0]}
+
+
+def parts_of_median(
+        wholes: Sequence[float], many: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """
+    Return the parts of the run whose whole is the median, in the order of the first.
+
+    Of an even number of runs it is the mean of the two in the middle, so that the parts add up as
+    those of each run do; medians of each part do not.
+    """
+    by_whole = sorted(range(len(many)), key=lambda k: wholes[k])
+    middle = [many[k] for k in by_whole[(len(many) - 1) // 2:len(many) // 2 + 1]]
+    return {part: sum(each.get(part, 0.0) for each in middle) / len(middle) for part in many[0]}

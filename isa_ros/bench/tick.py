@@ -77,13 +77,6 @@ def works_of(simulation: Simulation) -> dict[str, Work]:
                 advance_surroundings, lambda: surroundings.restore(of_surroundings))}
 
 
-def actuators_alone() -> float:
-    """Return the time of the leg's actuators for a tick, in s."""
-    simulation = Simulation(leg_drop())
-    _stepped(simulation, BEGUN)
-    return in_turn({ACTUATORS: works_of(simulation)[ACTUATORS]}, TICKS)[ACTUATORS]
-
-
 def packing(packer: Packer, step_ns: int) -> Callable[[], None]:
     """
     Return what packs the messages of `TICKS` ticks, those of each second once a second.

@@ -14,7 +14,11 @@ from isa_ros.tick.tick_loop import BEFORE_TICKS
 
 
 class FirstLaps(Laps):
-    """Laps with the first end of each phase, and the processor time before the ticks."""
+    """
+    Laps with the first end of each phase, and the processor time before the ticks.
+
+    `BEFORE_TICKS` is that of the ticks alone: without the time before the first one.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -27,14 +31,21 @@ class FirstLaps(Laps):
             self.first[phase] = time.monotonic()
             if phase == BEFORE_TICKS:
                 self.spent_before = processor_seconds()
+                super().lap(phase)
+                self.spent[phase] = 0.0
+                return
         super().lap(phase)
 
 
 class Watch:
-    """Measures one run; ``startup`` are the parts of the start-up before it."""
+    """
+    Measures one run; ``startup`` are the parts of the start-up before it.
 
-    def __init__(self, startup: dict[str, float]) -> None:
-        self._startup = startup
+    ``started``: monotonic clock at the start of its process.
+    """
+
+    def __init__(self, startup: dict[str, float], started: float) -> None:
+        self._startup, self._started = startup, started
         self._laps = FirstLaps()
         self._begun = time.monotonic()
         self._factor = 0.0
@@ -74,17 +85,17 @@ class Watch:
             begun = first[phase]
         return Measured(
             ticks_per_s=1e3 * self._factor, startup=parts,
+            to_tick_0=first[BEFORE_TICKS] - self._started,
             phases={phase: spent / ticks for phase, spent in self._laps.spent.items()
-                    if phase not in (STARTING, JOINING, BEFORE_TICKS)},
+                    if phase not in (STARTING, JOINING)},
             processor={part: spent / ticks for part, spent in self._spent.items()},
             memory=self._memory)
 
 
 def processor_seconds() -> dict[str, float]:
     """Return the processor time so far of this process, and of its children together."""
-    me = os.getpid()
-    spent = {COORDINATOR: processor_seconds_of(me)}
-    children = children_of(me)
+    spent = {COORDINATOR: time.process_time()}
+    children = children_of(os.getpid())
     if children:
         spent[ACTUATORS] = sum(processor_seconds_of(child) for child in children)
     return spent

@@ -220,6 +220,12 @@ def _completion(parser: argparse.ArgumentParser) -> None:
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
+    parser.add_argument(
+        '--against', metavar='REV', help='also compare with a commit of this checkout: the same '
+        'runs, old and new in turn')
+    parser.add_argument(
+        '--first-run', action='store_true', help='also make a wheel, install it aside, and '
+        'measure its first run; some minutes')
     shared_arguments.json_file(parser)
     shared_arguments.page_directory(parser, 'bench.md and its figure')
 

@@ -137,6 +137,7 @@ class TickLoop:
         most = min(until, self.source.quiet_until(tick)) - tick
         if most < 1:
             return
+        self._lap(BEFORE_TICKS)
         kept, is_seen = self._quiet.run(tick, int(most), self.sinks)
         self.ticks += kept + is_seen
         if is_seen:

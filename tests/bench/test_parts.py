@@ -1,9 +1,12 @@
 """Rows that are measured in this process: positive, and consistent with each other."""
 
 from isa_ros.bench import plant, tick
-from isa_ros.bench.parts import divided, misfits
+from isa_ros.bench.parts import divided, in_turn, misfits, Work
 from isa_ros.bench.row import Row
+from isa_ros.bench.spec import parts_of_median
+from isa_ros.bench.watch import FirstLaps
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.tick.tick_loop import BEFORE_TICKS
 import pytest
 
 
@@ -51,3 +54,37 @@ def test_error_of_the_cylinder_stands_beside_its_speed(monkeypatch):
     assert speed.value > 0.0 and speed.ratio > 0.0
     assert 0.0 < error.value < 1e-9
     assert error.ratio == pytest.approx(1e-9 / error.value)
+
+
+def test_the_parts_of_the_median_run_add_up_where_medians_of_parts_do_not():
+    """Three runs of 10, 20 and 30; of two their mean."""
+    many = [{'a': 1.0, 'b': 9.0}, {'a': 15.0, 'b': 5.0}, {'a': 7.0, 'b': 23.0}]
+    assert parts_of_median([10.0, 20.0, 30.0], many) == {'a': 15.0, 'b': 5.0}
+    assert parts_of_median([20.0, 30.0], many[1:]) == {'a': 11.0, 'b': 14.0}
+    assert parts_of_median([30.0, 10.0], [many[2], many[0]]) == {'a': 4.0, 'b': 16.0}
+
+
+def test_parts_of_a_start_up_are_in_its_unit():
+    rows = divided(Row('to tick 0', 2.0, 's'), {'imports': 1.5}, 0.3, '')
+    assert [(row.name, row.value, row.unit) for row in rows] == [
+        ('imports', 1.5, 's'), ('not covered', 0.5, 's')]
+
+
+def test_each_work_is_measured_by_its_clock():
+    """One clock stands still, the other goes on by 3 s with each look at it."""
+    clock = iter(range(0, 1000, 3))
+    times = in_turn({'still': Work(lambda: None, clock=lambda: 7.0),
+                     'moving': Work(lambda: None, clock=lambda: float(next(clock)))}, 6)
+    assert times == {'still': 0.0, 'moving': 0.5}
+
+
+def test_laps_between_ticks_do_not_count_what_was_before_the_first(monkeypatch):
+    """The first ends the start-up; the second, 0.25 s later, is of the ticks."""
+    now = iter([0.0, 5.0, 6.0, 6.25])
+    laps = FirstLaps()
+    monkeypatch.setattr(laps, '_now', lambda: next(now))
+    laps._last = laps._now()
+    for phase in (BEFORE_TICKS, 'quiet ticks', BEFORE_TICKS):
+        laps.lap(phase)
+    assert laps.spent == {BEFORE_TICKS: 0.25, 'quiet ticks': 1.0}
+    assert laps.spent_before['coordinator'] > 0.0

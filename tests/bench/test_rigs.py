@@ -1,8 +1,9 @@
 """The run files of the growth."""
 
 from isa_ros.bench.rigs import request_of
-from isa_ros.bench.spec import LEG, ONE_PROCESS, PROCESSES, Spec
+from isa_ros.bench.spec import LEG, ONE_PROCESS, PROCESSES, QUADRUPED, Spec
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.scenario.scenario import load_scenario
 
 
 def test_twelve_actuators_are_four_legs_on_loads_of_their_own(tmp_path):
@@ -19,3 +20,12 @@ def test_the_leg_is_the_shipped_one_in_its_drop(tmp_path):
     request = request_of(Spec(LEG, ONE_PROCESS, 250), tmp_path)
     assert (request.config.name, request.scenario.name) == ('leg.yaml', 'drop.yaml')
     assert request.in_process
+
+
+def test_the_quadruped_trots_with_its_controller(tmp_path):
+    request = request_of(Spec(QUADRUPED, PROCESSES, 250), tmp_path)
+    assert (request.config.name, request.scenario.name) == (
+        'quadruped.yaml', 'quadruped_trot.yaml')
+    scenario = load_scenario(request.scenario, load_run(request.config))
+    assert [own.name for own in scenario.run.called] == ['trot']
+    assert str(Spec(QUADRUPED, PROCESSES, 250)) == 'the quadruped, processes'
