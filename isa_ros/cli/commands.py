@@ -44,6 +44,7 @@ def demo(options: Namespace) -> bool:
     from isa_ros.analysis.report.outcome import outcome
     from isa_ros.analysis.report.report import write_report
     from isa_ros.analysis.signals.signals import read_signals
+    from isa_ros.cli.next_steps import next_steps_text
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
         raise BagError(f'{out} already exists; a demo does not overwrite it')
@@ -52,7 +53,7 @@ def demo(options: Namespace) -> bool:
         out=out / 'bag', is_alone=options.is_alone)).out
     page, *figures = write_report(bag, out / 'report.html')
     print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}\n')
-    print(energy_text(bag))
+    print(f'{energy_text(bag)}\n\n{next_steps_text(bag)}')
     return True
 
 
