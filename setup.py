@@ -37,8 +37,8 @@ setup(
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
         'isa_ros': [
-            'py.typed', 'config/data/*/*.yaml', 'export/sources/*', 'nodes/middleware/*.xml',
-            'paper/*.yaml'],
+            'py.typed', 'config/data/*/*.yaml', 'export/sources/*', 'export/fmi/sources/*',
+            'nodes/middleware/*.xml', 'paper/*.yaml'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[

@@ -51,7 +51,7 @@ class Chosen(NamedTuple):
         """Return the rows of a set; ``prefix`` begins names, ``place`` their keys in the run."""
         found = []
         for row in rows(sheet, self.origins.get(origin, {})):
-            value = _value(sheet, row)
+            value = value_of(sheet, row)
             name = f'{prefix}{row.parameter}'
             is_set = any(f'{place}{name}.'.startswith(f'{key}.') for key in self.values)
             found.append((row._replace(parameter=name, source=SET if is_set else row.source),
@@ -59,7 +59,7 @@ class Chosen(NamedTuple):
         return found
 
 
-def _value(sheet: Parameters, row: ListedValue) -> float | str:
+def value_of(sheet: Parameters, row: ListedValue) -> float | str:
     """Return the value of a row: a number exactly, anything else as it is shown."""
     value: object = sheet
     for name in row.parameter.split('.'):

@@ -1,6 +1,6 @@
 """What is exported of an actuator: its memory before its start, and the kernels over it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import re
 from typing import Any, NamedTuple
 
@@ -51,8 +51,6 @@ class Exported:
     """What starts it."""
     ticking: tuple[Called, ...]
     """What makes a tick, one after the other."""
-    supply: Records | None
-    """`SUPPLY_SAMPLE` of its supply, (1,); None: its pressures come from outside."""
 
     @property
     def has_own_load(self) -> bool:
@@ -90,17 +88,14 @@ def word_of(actuator: str, given: str | None = None) -> str:
     return word
 
 
-def exported(
-        chosen: Chosen, *, name: str | None = None, with_supply: bool = False) -> Exported:
+def exported(chosen: Chosen, *, name: str | None = None) -> Exported:
     """
     Return what is exported of an actuator; names in C begin with ``name``, see `word_of`.
-
-    With its supply, which feeds it alone: the pressures are then those of the supply.
 
     Raises
     ------
     ConfigError
-        As `word_of`; or its supply is a circuit of lines and manifolds.
+        As `word_of`.
 
     """
     run, row = chosen.run, chosen.row
@@ -112,11 +107,10 @@ def exported(
     own.ports[:] = 0
     own.commands[:] = 0
     own.clock[0] = 0
-    before, after, supply = _supply(chosen, own) if with_supply else ((), (), None)
     return Exported(
         chosen, word_of(config.name, name), actuator, start, own,
         Called(start_actuator, _started(config, start, own)),
-        (*before, Called(group_tick, own), *after), supply)
+        (Called(group_tick, own),))
 
 
 def _started(config: ActuatorConfig, start: Records, own: Ticked) -> Started:
@@ -124,22 +118,3 @@ def _started(config: ActuatorConfig, start: Records, own: Ticked) -> Started:
     mode = start_mode(config.name, config.mode, config.sheet.reu)
     return Started(start, np.array(initial_gains(config.sheet.reu)),
                    np.array([mode, int(config.auto_enable)], np.int64), own.memory)
-
-
-def _supply(chosen: Chosen, own: Ticked) -> tuple[
-        tuple[Called, ...], tuple[Called, ...], Records]:
-    """Return kernels of the supply before and after the actuator in a tick, and its sample."""
-    run, config = chosen.run, chosen.config
-    source = next(supply for supply in run.supplies if config.name in supply.feeds)
-    alone = replace(run, actuators=(config,), bodies=(), controllers=(), called=(),
-                    emergency_stops=(), supplies=(source.feeding([config.name]),))
-    surroundings = surroundings_of(alone)
-    memory = own.memory
-    parts = surroundings.parts(own.ports, memory.feeds, memory.replies, memory.fed)
-    if parts is None:
-        raise ConfigError(
-            f'{config.name}: its supply {source.name} is a circuit, must be constant or a pump '
-            'with an accumulator for an FMU; a library (--c) takes pressures from outside')
-    before, after = (
-        tuple(Called(part.bound.function, part.bound.memory) for part in side) for side in parts)
-    return before, after, surroundings.supplies[:1]

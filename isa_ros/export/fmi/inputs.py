@@ -1,0 +1,112 @@
+"""
+What a unit is given: command, load port and start, each a number with its range.
+
+Their order is that of the library's inputs, and their names, in capitals, are its constants.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.overload import most_force
+from isa_ros.actuator.requests import start_mode
+from isa_ros.actuator.setpoint_range import Bounds, setpoint_bounds
+from isa_ros.core.device import MODES
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.units import MPA, of_coordinate
+from isa_ros.export.fmi.variables import Home, Role, Type, Variable
+from isa_ros.plant.plant import MotorPlant
+from isa_ros.reu.cascade import initial_gains
+import numpy as np
+
+PORT_FIELDS: Mapping[str, tuple[str, str, str]] = {
+    'x0': ('position', 'm | rad', 'of the load at the begin of the step'),
+    'v0': ('velocity', 'm/s | rad/s', 'of the load at the begin of the step'),
+    'a0': ('acceleration', 'm/s2 | rad/s2',
+           'of the reference motion of port.stiffness and port.damping'),
+    'inverse_mass': ('inverse_mass', '1/kg | 1/(kg m2)',
+                     '1/m by which the force accelerates the load within the step; 0: not at all'),
+    'a_bias': ('bias', 'm/s2 | rad/s2', 'acceleration of the load within the step, without force'),
+    'jerk': ('jerk', 'm/s3 | rad/s3', 'slope of port.bias'),
+    'stiffness': ('stiffness', '1/s2', 'towards the reference motion, over the mass'),
+    'damping': ('damping', '1/s', 'towards the speed of the reference motion, over the mass'),
+}
+"""Name, unit and meaning of each field of a `LOAD_PORT` but the pressures  (L1)."""
+assert tuple(PORT_FIELDS) == (LOAD_PORT.names or ())[:len(PORT_FIELDS)]
+
+SETPOINT = (
+    ('position', 'm | rad', 'that piston or rotor is to have'),
+    ('velocity', 'm/s | rad/s', 'that it is to have there'),
+    ('effort', 'N | Nm', 'feed-forward; in mode force the setpoint'),
+    ('stiffness', 'N/m | Nm/rad', 'of the impedance'),
+    ('damping', 'Ns/m | Nms/rad', 'of the impedance'),
+)
+"""Fields of a `COMMAND` that are a setpoint and its gains, in their order there."""
+
+
+def inputs(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+    """
+    Yield all that the unit is given; ``start`` is its `START` row.
+
+    An actuator with a load of its own has no port.
+    """
+    port = _port(config, start) if config.load is None else ()
+    for place, found in enumerate((*_command(config, start), *port, *_start(config, start))):
+        yield found._replace(place=place)
+
+
+def _input(name: str, type_: Type, meaning: str, unit: str, start: float,
+           bounds: Bounds | None = None, enumeration: str = '') -> Variable:
+    return Variable(
+        name, type_, Role.INPUT, Home.INPUT, 0, meaning, unit, start,
+        None if bounds is None else bounds.low, None if bounds is None else bounds.high,
+        enumeration)
+
+
+def _command(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+    sheet = config.sheet
+    bounds = setpoint_bounds(sheet)
+    stiffness, damping = initial_gains(sheet.reu)
+    values = (float(start['position']), 0.0, 0.0, stiffness, damping)
+    for (name, unit, meaning), value in zip(SETPOINT, values):
+        yield _input(f'setpoint.{name}', Type.REAL, meaning,
+                     of_coordinate(unit, sheet.is_rotary), value, bounds.get(name))
+    yield _input('enable', Type.BOOLEAN, 'the device is enabled, or is to be', '1',
+                 float(config.auto_enable))
+    yield _input('clear_fault', Type.BOOLEAN, 'its rising edge clears a fault', '1', 0.0)
+    yield _input('quick_stop', Type.BOOLEAN, 'its rising edge is a quick stop', '1', 0.0)
+    mode = start_mode(config.name, config.mode, sheet.reu)
+    yield _input('mode', Type.ENUMERATION, 'mode of the device', '1', float(mode),
+                 Bounds(1.0, len(MODES) - 1.0, '', ''), 'Mode')
+    yield _input('reference', Type.REAL,
+                 'setpoint of the modes current (A), spool (m) and pressure (Pa)', '1', 0.0)
+
+
+def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+    is_rotary = config.sheet.is_rotary
+    for field, (name, unit, meaning) in PORT_FIELDS.items():
+        value = float(start['position']) if field == 'x0' else 0.0
+        yield _input(
+            f'port.{name}', Type.REAL, meaning, of_coordinate(unit, is_rotary), value)
+
+
+def _start(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+    sheet = config.sheet
+    length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
+    position = setpoint_bounds(sheet).get('position')
+    low, high = _largest_forces(config)
+    for found in (
+            _input('start.position', Type.REAL, 'of piston or rotor at the start', length,
+                   float(start['position']), position),
+            _input('start.force', Type.REAL, 'that it holds at the start, > 0 pushes out', force,
+                   float(start['force']), Bounds(low, high, force, ''))):
+        yield found._replace(role=Role.START)
+
+
+def _largest_forces(config: ActuatorConfig) -> tuple[float, float]:
+    """Return the range of the force that it can hold at the start, N or Nm."""
+    plant = config.sheet.plant
+    if isinstance(plant, MotorPlant):
+        most = plant.relief.opening_pressure_mpa * MPA * plant.drive.areas[0]
+        return -most, most
+    area_a, area_b = plant.drive.areas
+    return -most_force(plant, area_a), most_force(plant, area_b)

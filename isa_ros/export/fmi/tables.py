@@ -1,0 +1,113 @@
+"""The tables of a unit as text of C: its variables, and the memory of its supply."""
+
+from collections.abc import Iterable, Iterator, Sequence
+import re
+
+from isa_ros.export.exported import Exported
+from isa_ros.export.fmi.inputs import PORT_FIELDS
+from isa_ros.export.fmi.supply import Supplied
+from isa_ros.export.fmi.variables import Home, Type, Variable
+from isa_ros.export.layout import ALIGNED
+from isa_ros.export.tables import number, quoted
+from isa_ros.surroundings.supply import SUPPLY_FIELDS
+import numpy as np
+
+_NOT_OF_A_WORD = re.compile('[^A-Z0-9]')
+_HOMES = {home: f'HOME_{home.name}' for home in Home}
+
+
+def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: str) -> str:
+    """Return the text of the tables' header."""
+    inputs = [variable for variable in table if variable.home is Home.INPUT]
+    layout = supply.layout()
+    return '\n'.join([
+        f'/* The unit of {own.word}: its variables, and the memory of its supply. */',
+        '#ifndef ISA_TABLES_H', '#define ISA_TABLES_H', '', f'#include "{own.word}.h"', '',
+        f'#define ISA(name) {own.word}_##name', '',
+        *_defined((
+            ('TOKEN', quoted(token)), ('STEP_NS', own.step_ns),
+            ('LIMITS', int(own.actuator.setpoint_range.limits)),
+            ('HAS_PORT', int(not own.has_own_load)), ('HAS_FEED', int(supply.has_feed)),
+            ('VARIABLE_COUNT', len(table)), ('INPUTS', len(inputs)),
+            ('PORT_INPUTS', len(PORT_FIELDS)), ('SUPPLY_ALIGNED', ALIGNED),
+            ('SUPPLY_BYTES', layout.size), ('SUPPLY_WORDS', len(_words(supply))),
+            ('ANSWER_BYTES', supply.answers.nbytes),
+            *((f'AT_{name}', layout.place(rows) if rows.size else 0) for name, rows in (
+                ('SUPPLY', supply.sample), ('PORT', supply.ports), ('FEED', supply.feeds),
+                ('REPLY', supply.replies), ('FED', supply.fed), ('ANSWERS', supply.answers))))),
+        '', '/* Places of the inputs. */', 'enum input {',
+        *(f'  IN_{_NOT_OF_A_WORD.sub("_", variable.name.upper())} = {variable.place},'
+          for variable in inputs),
+        '};', '', *_types(), '', '#endif', ''])
+
+
+def _types() -> Iterator[str]:
+    """Yield the types, and the declarations of the tables."""
+    yield f'enum home {{ {", ".join(_HOMES.values())} }};'
+    yield from (
+        '', '/* A variable: name and unit for messages, the range of what may be set. */',
+        'struct variable {', '  const char *name, *unit;', '  double low, high;',
+        '  int32_t place;', '  unsigned char type, home;', '};', '',
+        '/* A number of a table of a kernel: a place in the block, or the length of an axis. */',
+        'struct word {', '  int64_t value;', '  int is_place;', '};', '',
+        '/* A kernel, and where its table begins among the words. */',
+        'struct call {', '  int64_t (*run)(const int64_t *table);', '  int32_t table;', '};', '',
+        '/* `SUPPLY_SAMPLE`. */', 'typedef struct {')
+    yield from (f'  double {field.name};' for field in SUPPLY_FIELDS)
+    yield from (
+        '} supply_sample_t;', '', 'extern const struct variable VARIABLES[];',
+        'extern const double NUMBERS[], DEFAULTS[INPUTS];', 'extern const char *const TEXTS[];',
+        'extern const struct word WORDS[SUPPLY_WORDS];',
+        'extern const uint64_t SUPPLY_IMAGE[SUPPLY_BYTES / 8];',
+        'extern const struct call BEFORE[], AFTER[];',
+        'extern const size_t BEFORE_COUNT, AFTER_COUNT;')
+
+
+def _words(supply: Supplied) -> list[str]:
+    """Return the words of the tables of all kernels, one after the other."""
+    layout = supply.layout()
+    return [f'{{{word.value}, {int(word.is_place)}}}' for one in (*supply.before, *supply.after)
+            for word in layout.table(one.memory)]
+
+
+def source(supply: Supplied, table: Sequence[Variable]) -> str:
+    """Return the text of the tables."""
+    layout = supply.layout()
+    called = (*supply.before, *supply.after)
+    ends = np.cumsum([0, *(len(list(layout.table(one.memory))) for one in called)])
+    calls = [f'{{{one.name}, {at}}}' for one, at in zip(called, ends)]
+    split = len(supply.before)
+    return '\n'.join([
+        '#include "tables.h"', '', '#include <math.h>', '',
+        *(f'int64_t {name}(const int64_t *table);'
+          for name in dict.fromkeys(one.name for one in called)), '',
+        *_array('struct variable VARIABLES', map(_variable, table)),
+        *_array('double DEFAULTS', (
+            number(float(own.start or 0.0)) for own in table if own.home is Home.INPUT)),
+        *_array('double NUMBERS', (
+            number(float(own.start or 0.0)) for own in table if own.home is Home.NUMBER)),
+        *_array('char *const TEXTS', (
+            quoted(str(own.start)) for own in table if own.home is Home.TEXT)),
+        *_array('struct word WORDS', _words(supply)),
+        *_array('uint64_t SUPPLY_IMAGE', (f'0x{word:016x}' for word in layout.image())),
+        *_array('struct call BEFORE', calls[:split]), *_array('struct call AFTER', calls[split:]),
+        f'const size_t BEFORE_COUNT = {split}, AFTER_COUNT = {len(calls) - split};', ''])
+
+
+def _array(name: str, rows: Iterable[str]) -> Iterator[str]:
+    yield f'const {name}[] = {{'
+    yield from (f'  {row},' for row in rows)
+    yield from ('};', '')
+
+
+def _variable(own: Variable) -> str:
+    """Return the row of a variable; a number without a range may be any."""
+    low = '-INFINITY' if own.low is None else number(own.low)
+    high = 'INFINITY' if own.high is None else number(own.high)
+    unit = '' if own.unit == '1' or own.kind is not Type.REAL else own.unit
+    return (f'{{{quoted(own.name)}, {quoted(unit)}, {low}, {high}, {own.place}, {int(own.kind)}, '
+            f'{_HOMES[own.home]}}}')
+
+
+def _defined(values: Iterable[tuple[str, object]]) -> Iterator[str]:
+    yield from (f'#define {name} {value}' for name, value in values)
