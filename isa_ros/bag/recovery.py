@@ -103,7 +103,7 @@ def _refuse_others(bag: Bag, path: Path, in_place: bool) -> None:
     """Refuse what cannot be recovered."""
     if not bag.has_provenance:
         raise BagError(f'{path}: was not recorded by isa_ros, or is cut short in its head')
-    _ = bag.provenance  # refused if it is damaged
+    _ = bag.provenance_records  # refused if damaged; those of another version are copied too
     if bag.number is not None or (not path.is_dir() and bag.parts[0].continues):
         raise BagError(
             f'{path}: is file {bag.number or 0} of a split bag, recover its directory')

@@ -12,6 +12,7 @@ from isa_ros.bag.reader import Bag, BagMessage, Tick
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
+from isa_ros.errors import ConfigError
 from isa_ros.replay.difference import ABSENT, BAG, FirstDifference, PRESENT, RunDifference, Value
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.replay.topic_comparison import TopicComparison
@@ -208,15 +209,15 @@ def recorded_as(bag: Bag) -> RecordConfig:
     """
     Return a bag's configuration of recording; by default everything is recorded.
 
-    Raises
-    ------
-    ConfigError
-        The configuration cannot be read.
-
+    So it is taken to be where the configuration is missing, or cannot be read here: then samples
+    that one of two bags left out are differences.
     """
     if not bag.has_provenance:
         return RecordConfig()
-    name = f'{bag.path.name}: {CONFIGURATION}'
-    tree = parse(bag.provenance.configuration, name)
-    record: RecordConfig = RECORD.read(tree.get('record', {}), Place(name, 'record'))
+    text = bag.provenance_records[0].get(CONFIGURATION, b'').decode('utf-8', 'replace')
+    try:
+        tree = parse(text, CONFIGURATION)
+        record: RecordConfig = RECORD.read(tree.get('record', {}), Place(CONFIGURATION, 'record'))
+    except ConfigError:
+        return RecordConfig()
     return record

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import DifferingKey
+from isa_ros.errors import ConfigError
 from isa_ros.replay.compare import compare_bags, recorded_as
 from isa_ros.replay.difference import RunDifference, TopicDifference
 from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
@@ -17,14 +18,17 @@ class Comparison(NamedTuple):
     """Differing keys of the provenance, and the comparison of the messages."""
 
     keys: Sequence[DifferingKey] | None
-    """None: neither run has a provenance."""
+    """None: neither run has a provenance, or one has a configuration that cannot be read."""
     report: RunDifference
     is_thinned: bool = False
     """Whether the bags were to record different samples; only those of both are compared."""
+    problem: str = ''
+    """The reason why a configuration cannot be read."""
 
     def lines(self, expected: str, actual: str) -> list[str]:
         """Return the text for the user; ``expected`` and ``actual`` are the runs' names."""
-        lines = key_lines(self.keys, expected, actual)
+        lines = [f'{self.problem}; comparing the messages only'] if self.problem else (
+            key_lines(self.keys, expected, actual))
         if self.is_thinned:
             lines.append('recorded with different record options: comparing the samples in both')
         lines.append(str(self.report))
@@ -37,7 +41,7 @@ class Comparison(NamedTuple):
     def tree(self) -> dict[str, Any]:
         """Return everything for JSON; an absent key is null."""
         return {
-            'is_equal': self.report.is_equal,
+            'is_equal': self.report.is_equal, 'problem': self.problem or None,
             'ticks': self.report.ticks, 'messages': self.report.messages,
             'end_ns': self.report.end_ns,
             'keys': [_json(key._asdict()) for key in self.keys or ()],
@@ -57,20 +61,22 @@ def key_lines(
 
 def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Comparison:
     """
-    Return the comparison of two bags.
+    Return the comparison of two bags; their messages need no configuration.
 
     Raises
     ------
     BagError
         A bag is damaged, or a message does not match its type.
-    ConfigError
-        The configuration or the scenario in a bag is not a YAML section.
 
     """
+    keys, problem = None, ''
+    try:
+        keys = provenance_differences(records_of_bag(expected), records_of_bag(actual))
+    except ConfigError as error:
+        problem = str(error)
     return Comparison(
-        provenance_differences(records_of_bag(expected), records_of_bag(actual)),
-        compare_bags(expected, actual, tolerances),
-        not recorded_as(expected).thins_like(recorded_as(actual)))
+        keys, compare_bags(expected, actual, tolerances),
+        not recorded_as(expected).thins_like(recorded_as(actual)), problem)
 
 
 def _cells(topic: TopicDifference) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 import os
 from pathlib import Path
 
-from isa_ros.bag import part_writer
+from isa_ros.bag import part_writer, provenance
 from isa_ros.bag.metadata import NO_START
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.recovery import recover
@@ -118,6 +118,21 @@ def test_every_reader_opens_it(tmp_path: Path, storage: Storage) -> None:
         bag = Bag(out)
         assert bag.is_whole and bag.provenance == Bag(whole).provenance
         assert [(m.topic, m.t_ns, m.data) for m in bag.messages()] == sent
+
+
+def test_a_bag_of_a_later_format_is_completed(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its provenance cannot be read here, and is not needed: it is copied as it is."""
+    monkeypatch.setattr(provenance, 'FORMAT', '2')
+    record(tmp_path / 'rig', N)
+    records = Bag(tmp_path / 'rig').provenance_records
+    monkeypatch.undo()
+    last = last_file(tmp_path / 'rig')
+    cut(last, last.stat().st_size - 9)
+    out = recover(tmp_path / 'rig').directory
+    assert Bag(out).is_whole and Bag(out).provenance_records == records
+    with pytest.raises(BagError, match="format '2', must be '1'"):
+        _ = Bag(out).provenance
 
 
 @pytest.mark.parametrize('left', [None, 0, 5, 300, 3000])

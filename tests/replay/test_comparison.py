@@ -5,9 +5,11 @@ import json
 from pathlib import Path
 
 import isa_ros
+from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
 from isa_ros.run import provenance
 import pytest
+from tests.bag.golden import rewrite
 from tests.bag.recorded import NAMES, record, tick_messages
 from tests.replay.test_compare import foreign
 
@@ -166,3 +168,30 @@ def test_bags_of_other_recorders_have_no_configuration(
         'both without configuration: comparing the messages only')
     assert compare({'one': bags['one'], 'other': others['other']}, 'other') == 1
     assert capsys.readouterr().out.splitlines()[2].split() == ['provenance', 'present', 'absent']
+
+
+@pytest.mark.parametrize('text, problem', [
+    ('{{{', 'line 2: did not find expected'), ('- 1\n', 'must be sections of `key: value`'),
+    ('record: {thinning: 3}\n', '')])
+def test_messages_are_compared_without_a_configuration(
+        bags: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str,
+        problem: str) -> None:
+    """Of a version to come, or damaged by hand; each message is still that of the first bag."""
+    other = rewrite(Bag(bags['one']), tmp_path / 'other', configuration=lambda _: text)
+    code = compare({'one': bags['one'], 'other': other}, 'other', '--json', str(tmp_path / 'j'))
+    first, *_, last = capsys.readouterr().out.splitlines()
+    assert code == 0 and last.startswith('equal: ')
+    assert (problem in first and first.endswith('; comparing the messages only')) if problem else (
+        first == 'configuration, scenario or versions differ:')
+    found = json.loads((tmp_path / 'j').read_text())['problem']
+    assert (problem in found) if problem else found is None
+
+
+def test_a_message_that_differs_is_found_without_a_configuration(
+        bags: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = rewrite(
+        Bag(bags['one']), tmp_path / 'other', configuration=lambda _: '[',
+        change=lambda topic, sequence, data: None if sequence == 3 and topic == '/ram/valve'
+        else data)
+    assert compare({'one': bags['one'], 'other': other}, 'other') == 1
+    assert any(line.startswith('/ram/valve ') for line in capsys.readouterr().out.splitlines())
