@@ -29,6 +29,7 @@ from isa_ros.reu.block import Pid
 from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation, LINEARISED
+from isa_ros.reu.flow_stop import end_on_holding_valves
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.protection import protection_record
 from isa_ros.reu.protection_sheet import reactions_of
@@ -260,6 +261,8 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         valve_lag(known[0], sheet.reu), null_speed(known[0]), known[0].sensors.encoder,
         known[0].valve.k_spool, known[0].coil.parallel, block_wiring(sheet))
     reu['rules']['flow']['is_endless'] = float(sheet.is_endless)
+    if known[0].holding_a.kind or known[0].holding_b.kind:
+        end_on_holding_valves(reu['rules']['flow'])
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),

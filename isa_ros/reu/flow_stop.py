@@ -5,8 +5,8 @@ Oil that cannot leave a chamber bears any load, so a stop closes the valve along
 speed. The orifice law at the measured force gives the opening for a speed; a share of the fast
 part of the force is taken off the speed and damps the mass on its oil. The ramp ends gently, so
 that the oil which brakes the mass expands while it still moves. At rest a slow position loop makes
-up for leakage and a null bias. The load appears in no gain: all of them follow from the lag of the
-valve and the stiffness of the oil.
+up for leakage and a null bias, except on load-holding valves. The load appears in no gain: all of
+them follow from the lag of the valve and the stiffness of the oil.
 
 A heavy load still moves when the ramp has ended: a stop is over once the position stands.
 
@@ -92,6 +92,16 @@ def flow_stop_record(
         error_alpha=_alpha(crossover, period), damping=crossover / least,
         schedule=least / stiffness, hold=hold, integral=INTEGRAL_SHARE * hold * hold,
         largest=null_speed)
+
+
+def end_on_holding_valves(flow_stop: np.ndarray) -> None:
+    """
+    Take the position loop out of the `FLOW_STOP` of an actuator with load-holding valves.
+
+    They bear the load once the servo valve is at null, and that loop would open them in turn: a
+    boom then swings by more with each turn.
+    """
+    flow_stop['hold'] = flow_stop['integral'] = 0.0
 
 
 def _alpha(corner: float, period: float) -> float:
