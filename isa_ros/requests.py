@@ -6,6 +6,7 @@ from typing import Any
 
 from isa_ros.controller import Setpoint, Setpoints
 from isa_ros.core.device import FORCE, IMPEDANCE, MODES, POSITION, REFERENCES
+from isa_ros.core.record import floats
 from isa_ros.core.signals import (
     COMMAND, GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP,
     HAS_REFERENCE, HAS_SETPOINT)
@@ -15,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 _NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
+_COLUMNS = slice(1, 1 + len(_NUMBERS))     # of a `COMMAND`: behind the word of its two flags
+_GAINS = slice(-len(GAINS_OF_COMMAND), None)
 
 
 def fill_requests(
@@ -59,18 +62,15 @@ def _fill_rows(
     try:
         rows = [names.index(name) for name in setpoints.names]
         values = np.full((len(_NUMBERS), len(rows)), math.nan)
-        for k, field in enumerate(_NUMBERS):
-            given = getattr(setpoints, field)
-            if given is not None:
-                values[k] = given
-                if not (np.isfinite(values[k]).all()
-                        and (field not in GAINS_OF_COMMAND or values[k].min() >= 0.0)):
-                    raise ValueError
+        given = [k for k, field in enumerate(_NUMBERS) if getattr(setpoints, field) is not None]
+        for k in given:
+            values[k] = getattr(setpoints, _NUMBERS[k])
+        if not np.isfinite(values[given]).all() or (values[_GAINS] < 0.0).any():
+            raise ValueError
     except (TypeError, ValueError):
         _refuse_rows(setpoints, names)
         raise
-    for k, field in enumerate(_NUMBERS):
-        requests[field][rows] = values[k]
+    floats(requests)[rows, _COLUMNS] = values.T
     requests['kinds'][rows] = HAS_SETPOINT
 
 

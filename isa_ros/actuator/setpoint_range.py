@@ -11,8 +11,10 @@ import math
 from typing import NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
+from isa_ros.actuator.requested import is_unusual, Requested
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables
+from isa_ros.core.bound import Rebound
 from isa_ros.core.changeable import sound
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, MODES, POSITION, PRESSURE, SPOOL
 from isa_ros.core.record import floats
@@ -39,7 +41,6 @@ NUMBERS = {
 _FLOAT_BYTES = 8
 MOST_TURNS = 1e4
 """Largest position of a motor either way."""
-_OF_A_MODE = HAS_MODE | HAS_REFERENCE
 
 
 class Bounds(NamedTuple):
@@ -238,8 +239,9 @@ class RequestRange:
         for row, own in enumerate(ranges):
             for field, bounds in own.bounds.items():
                 low[field][row], high[field][row] = bounds.low, bounds.high
-        self._is_low, self._is_high = self._is_beyond = np.zeros((2, *self._low.shape), np.bool_)
         self._next_report = [0] * len(ranges)
+        self._is_beyond = Rebound(is_unusual, lambda requests: Requested(
+            requests, floats(requests), self._low, self._high))
 
     def admit(self, t_ns: int, requests: Records) -> Sequence[str]:
         """
@@ -248,11 +250,7 @@ class RequestRange:
         Returns lines that report it, at most one in `REPORT_NS` per actuator. A request that is
         refused is deleted as a whole, with its enabling.
         """
-        values = floats(requests)
-        np.less(values, self._low, self._is_low)
-        np.greater(values, self._high, self._is_high)
-        if not np.count_nonzero(self._is_beyond) and not (
-                requests['kinds'] & _OF_A_MODE).any():
+        if not self._is_beyond.to(requests).run():
             return ()
         lines = []
         for row, own in enumerate(self._ranges):

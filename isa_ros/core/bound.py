@@ -10,6 +10,7 @@ it too.
 
 from collections.abc import Callable, Iterator, Sequence
 import ctypes
+from operator import is_
 from typing import Any, NamedTuple
 
 from isa_ros.core.kernel import entry_of, IS_COMPILED, kernel
@@ -158,7 +159,6 @@ class Rebound:
 
     def to(self, *given: NDArray[Any]) -> Bound:
         """Return the kernel over the memory with these arrays."""
-        if self._bound is None or any(
-                array is not other for array, other in zip(given, self._given, strict=True)):
+        if self._bound is None or not all(map(is_, given, self._given)):
             self._given, self._bound = given, Bound(self._function, self._memory(*given))
         return self._bound

@@ -124,6 +124,7 @@ class Packer:
             f'/{name}', name in names.heated, row in self._links.rows, name in names.cushioned)]
             for row, (name, _) in enumerate(names.actuators)]
         self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}
+        self._recordings: list[Bound] = []
         self._bind()
 
     @staticmethod
@@ -182,7 +183,8 @@ class Packer:
             (self._kinds != 0).tobytes(), (self._sent_kinds != 0).tobytes(), self._not_due)
         packed = Packed(self._bytes, where)
         extra = [(self._index[topic], data) for topic, data in self.rare.items()]
-        extra += self.of_events(events)
+        if events:
+            extra += self.of_events(events)
         if not extra:
             return packed
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
@@ -201,11 +203,20 @@ class Packer:
         return {name: period for name, period in self._periods.items() if period > step_ns}
 
     def recording(self, clock: NDArray[np.int64], layout: Layout, room: Room) -> Bound:
-        """Return what packs and records quiet ticks into a room; ``clock`` as of a sink."""
+        """
+        Return what packs and records quiet ticks into a room; ``clock`` as of a sink.
+
+        Another call with the same clock, layout and buffer moves it to the new room.
+        """
         self._packing.times[2] = self.start_ns
-        return Bound(record, Recording(
-            clock, self._packing, self._bytes, layout, room.buffer,
-            np.array([room.at, room.tick_bytes], np.int64)))
+        own = next((own for own in self._recordings if own.memory.buffer is room.buffer
+                    and own.memory.layout is layout and own.memory.clock is clock), None)
+        if own is None:
+            own = Bound(record, Recording(
+                clock, self._packing, self._bytes, layout, room.buffer, np.zeros(2, np.int64)))
+            self._recordings = [*self._recordings[1 - _RECORDINGS:], own]
+        own.memory.place[:] = room.at, room.tick_bytes
+        return own
 
     def of_events(self, events: Sequence[bytes]) -> Packed:
         """Return messages of events alone."""
@@ -283,5 +294,6 @@ def _n_columns(rows: PublishedRows) -> int:
 
 
 _MANY = 1_000_000     # ticks
+_RECORDINGS = 4     # that are kept: the buffers of a bag in turn, and few layouts
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _SENT = SENT_SETPOINT[0]

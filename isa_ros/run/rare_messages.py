@@ -7,12 +7,15 @@ They have texts, or values of any number, so that they have no place in a prepar
 from collections.abc import Iterator, Mapping, Sequence
 
 from isa_ros.core.accounts import accounts_of
+from isa_ros.core.bound import Bound
 from isa_ros.core.device import FIELDS, is_status_due
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
+from isa_ros.run.due_devices import Due, is_any_due
 from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
 from msg_adapters.applied_parameters import applied_parameters
+import numpy as np
 
 PARAMETERS, DEVICE = actuator_messages.APPLIED_PARAMETERS[0], actuator_messages.DEVICE[0]
 OF_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS[0]
@@ -35,6 +38,8 @@ class RareMessages:
         self._actuators, self._samples = actuators, samples
         self._supplies, self._supply_samples = supplies, supply_samples
         self._values = floats(samples)
+        self._due = Due(samples, np.zeros(2, np.int64))
+        self._is_any_due = Bound(is_any_due, self._due)
         self._is_run = is_run
         self._t_ns = self._start_ns = 0
         self._found: dict[str, bytes] = {}
@@ -61,8 +66,10 @@ class RareMessages:
         if tuned_supplies:
             self._found[OF_SUPPLIES] = applied_parameters(
                 coordinator_messages.NODE, tuned_supplies, applied_ns)
+        self._due.times[:] = t_ns, tick_start_ns
         changed = [row for row in range(len(self._actuators))
-                   if self.has_device(row, t_ns, tick_start_ns)]
+                   if self.has_device(row, t_ns, tick_start_ns)] if (
+                       self._announces or self._is_any_due.run()) else []
         self._announces = False
         for row in changed:
             name = self._actuators[row]

@@ -68,6 +68,7 @@ class QuietTicks:
         watched = Watched(self._clock, rows.samples, rows.applied, rows.sent, self._trip_times)
         self._tick = (*before, self._actuators, *after, Part(Bound(watch, watched), nothing))
         self._place = len(before)
+        self._program = Program(())
 
     @classmethod
     def of(cls, group: ActuatorGroup | None, surroundings: Surroundings, rows: Rows,
@@ -96,7 +97,10 @@ class QuietTicks:
         for sink in sinks:
             most, own = sink.begin_quiet(tick, most, self._clock)
             parts += own
-        done, place, found = Program([part.bound for part in parts]).run(most)
+        bounds = tuple(part.bound for part in parts)
+        if bounds != self._program.parts:
+            self._program = Program(bounds)
+        done, place, found = self._program.run(most)
         self._group.pass_ticks(done + (place >= self._place))
         for sink in sinks:
             sink.end_quiet(tick, done)
