@@ -81,7 +81,10 @@ def description(about: About, table: Sequence[Variable], version: Version) -> by
                    stepSize=_text(about.step))
     owner = xml.SubElement(root, 'ModelVariables')
     for reference, own in enumerate(table):
-        (_write_of_3 if is_3 else _write_of_2)(owner, reference, own)
+        if is_3:
+            _write_of_3(owner, reference, own)
+        elif own.role is not Role.TIME:     # is not needed there, and importers stumble over it
+            _write_of_2(owner, reference, own)
     _write_structure(xml.SubElement(root, 'ModelStructure'), table, is_3)
     xml.indent(root)
     text: bytes = xml.tostring(root, encoding='UTF-8', xml_declaration=True)

@@ -1,4 +1,4 @@
-"""The table of a unit's variables: time, what it is given, what it shows, and its parameters."""
+"""The table of a unit's variables: what it is given, what it shows, its parameters, and time."""
 
 from collections.abc import Iterator, Sequence
 
@@ -25,9 +25,9 @@ def variables(chosen: Chosen, supply: SupplyConfig, start: np.void) -> list[Vari
     """Return all variables of an actuator's unit with its supply; ``start`` is its `START`."""
     config = chosen.config
     return [
-        Variable('time', Type.REAL, Role.TIME, Home.TIME, 0, 'simulated time', 's'),
         *inputs(config, start), *_outputs(config.sheet.is_rotary),
-        *_placed(_parameters(chosen, supply))]
+        *_placed(_parameters(chosen, supply)),
+        Variable('time', Type.REAL, Role.TIME, Home.TIME, 0, 'simulated time', 's')]
 
 
 def _outputs(is_rotary: bool) -> Iterator[Variable]:

@@ -1,6 +1,7 @@
 """Units in fmpy, an importer that others have written: both versions of FMI with one face."""
 
 from collections.abc import Mapping, Sequence
+import ctypes
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,16 @@ class Unit:
     def numbers(self, names: Sequence[str]) -> np.ndarray:
         """Return the values of some variables as floats."""
         return np.array([float(self.get(name)) for name in names])
+
+    @property
+    def reached(self) -> float:
+        """Return the time that it has reached by itself, s; FMI 2 has no variable for it."""
+        if self.is_3:
+            return float(self.get('time'))
+        value = fmi2.fmi2Real()
+        self.slave.fmi2GetRealStatus(self.slave.component, fmi2.fmi2LastSuccessfulTime,
+                                     ctypes.byref(value))
+        return value.value
 
     @property
     def t(self) -> float:

@@ -144,7 +144,7 @@ def test_a_step_that_is_no_multiple_of_the_tick_is_not_made(make):
                 unit.t, size)
     assert unit.state() == before
     unit.slave.doStep(unit.t, 0.002 + 1e-12)    # as sums of times have it
-    assert unit.get('time') == pytest.approx(0.032)
+    assert unit.reached == pytest.approx(0.032)
 
 
 def test_a_step_from_another_time_is_not_made(make):
@@ -154,7 +154,7 @@ def test_a_step_from_another_time_is_not_made(make):
             0.01, STEP)
     refused(unit, DISCARD, 'a step from t = 0.002 s, must be from 0.003 s', unit.slave.doStep,
             0.002, STEP)
-    assert unit.get('time') == 0.003
+    assert unit.reached == 0.003
 
 
 def test_a_step_of_many_ticks_is_as_many_steps(make):
@@ -169,9 +169,9 @@ def test_a_step_of_many_ticks_is_as_many_steps(make):
 
 def test_time_begins_where_the_importer_says(make):
     unit = make(begin=2.5)
-    assert unit.get('time') == 2.5
+    assert unit.reached == 2.5
     unit.step(10)
-    assert unit.get('time') == 2.51
+    assert unit.reached == 2.51
 
 
 def test_equal_instances_do_not_know_each_other(make, case):
@@ -195,7 +195,7 @@ def test_a_state_goes_on_with_the_same_bytes(make, case):
         own.restore(state)
         own.n_steps = 120
         assert own.state() == state
-        assert own.get('time') == 0.12
+        assert own.reached == 0.12
         assert ran(own, case.ticks[120:200]).tobytes() == after.tobytes()
 
 
@@ -248,7 +248,7 @@ def test_phases_are_in_their_order(make):
     unit.slave.terminate()
     refused(unit, ERROR, 'a step is not possible when it has ended', unit.slave.doStep, unit.t,
             STEP)
-    assert unit.get('time') == 0.001
+    assert unit.reached == 0.001
 
 
 def test_the_token_of_another_unit_is_refused(case, version, tmp_path):
@@ -309,9 +309,11 @@ def test_types_and_references_are_checked(make):
             [real.valueReference])
     refused(unit, ERROR, 'trips is a whole number, must be a number', read,
             [whole.valueReference])
-    refused(unit, ERROR, f'value reference 9999, must be < {len(unit.variables)}', read, [9999])
+    most = max(own.valueReference for own in unit.variables.values()) + 1 + (not unit.is_3)
+    for beyond in (most, 9999):
+        refused(unit, ERROR, f'value reference {beyond}, must be < {most}', read, [beyond])
     write = unit.slave.setFloat64 if unit.is_3 else unit.slave.setReal
-    for name in ('position', 'supply.pressure', 'plant.drive.bore_mm', 'time'):
+    for name in ('position', 'supply.pressure', 'plant.drive.bore_mm'):
         refused(unit, ERROR, f'{name} is not possible with this unit', write,
                 [unit.variables[name].valueReference], [0.02])
 
@@ -337,7 +339,7 @@ def test_what_has_diverged_says_so_and_ends(on_port):
     unit.set({'port.position': 1e300})
     refused(unit, ERROR, 'is not finite', unit.step)
     assert unit.messages[0][1].startswith('t = 0.00')
-    unit.n_steps = round(unit.get('time') / STEP)
+    unit.n_steps = round(unit.reached / STEP)
     refused(unit, ERROR, 'after its state has diverged', unit.step)
     unit.slave.reset()
     unit.initialise()
