@@ -17,6 +17,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
+from isa_ros.replay.releases import release_that_replays
 from isa_ros.run.provenance import recorded_versions
 from msg_adapters.definitions import definition
 
@@ -74,8 +75,10 @@ def refuse_obstacles(bag: Bag, lines: Sequence[str]) -> None:
     if lines:
         more = len(lines) - _NAMED
         reasons = '; '.join(lines[:_NAMED]) + (f'; and {more} more' if more > 0 else '')
-        raise BagError(f'{bag.path}: cannot be simulated by this version: {reasons}; `isa report` '
-                       'and isa_ros.read show what it recorded')
+        release = release_that_replays(bag.path, versions_of(bag.provenance_records[1]))
+        raise BagError(f'{bag.path}: cannot be simulated by this version: {reasons}; '
+                       f'{release and f"{release}; "}`isa report` and isa_ros.read show what it '
+                       'recorded')
 
 
 def grouped(lines: Sequence[str]) -> list[str]:

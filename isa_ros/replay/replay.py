@@ -12,6 +12,7 @@ from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
+from isa_ros.bag.provenance import versions_of
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import RunConfig
@@ -23,6 +24,7 @@ from isa_ros.replay.compare import Comparer
 from isa_ros.replay.difference import RunDifference
 from isa_ros.replay.installation import (
     differences, obstacles, refuse_obstacles, topic_differences)
+from isa_ros.replay.releases import release_that_replays
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import LocalRun
@@ -54,6 +56,8 @@ class ReplayReport:
     """Differences from the installation that recorded the bag, one line each."""
     unconfirmed: Sequence[str]
     """Topics of the bag that this version does not record, or with another type."""
+    release: str = ''
+    """Which release replays it, and how to get it; '' if this one should."""
 
     @property
     def is_equal(self) -> bool:
@@ -65,6 +69,8 @@ class ReplayReport:
         verdict = str(self.report)
         if self.report.is_equal and self.unconfirmed:
             verdict = f'not confirmed: {", ".join(self.unconfirmed)}; the rest is {verdict}'
+        if not self.is_equal and self.release:
+            verdict = f'{verdict}\n{self.release}'
         return verdict if self.is_whole else f'{verdict}\nthe bag was cut short there'
 
 
@@ -104,7 +110,8 @@ def replay(
         lambda topic, sequence, t_ns: topic in topics.compared, is_exact=True)
     again.simulate(comparer, lambda: comparer.difference is not None)
     return ReplayReport(
-        comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
+        comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed,
+        release_that_replays(bag.path, versions_of(bag.provenance_records[1])))
 
 
 class Rerun:
