@@ -19,6 +19,8 @@ LIBRARY = 'isa_ros'  # without a version: the same run gives the same bytes ever
 CHUNK_BYTES = 1024 * 1024
 CHUNK_TICKS = 500
 CHUNK_NS = 500_000_000
+WAIT_NS = 400_000_000
+"""Length from which on a chunk is filled only once the one before is in the file."""
 QOS, TYPE_HASH = 'offered_qos_profiles', 'topic_type_hash'
 """Keys of a channel's metadata, as rosbag2 has them."""
 ROSBAG2, SERIALIZED = 'rosbag2', 'serialized_metadata'
@@ -99,15 +101,22 @@ class PartWriter:
             return None
         return self._completed(t_ns)
 
-    def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
+    def must_wait(self, t_ns: int) -> bool:
+        """Return whether the tick of ``t_ns`` needs the chunk before to be in the file."""
+        return not self._chunk.is_empty and t_ns - self._chunk.start_ns >= WAIT_NS
+
+    def open_stretch(
+            self, layout: Layout, t_ns: int, step_ns: int, is_writing: bool = False) -> Room:
         """
         Return room for ticks of ``layout``, at ``t_ns`` and then every ``step_ns``.
 
-        The last one that it has room for completes the chunk, unless `close_stretch` takes fewer.
+        The last one that it has room for completes the chunk, unless `close_stretch` takes fewer;
+        while the chunk before ``is_writing`` it is the one before the first that `must_wait`.
         """
         chunk = self._chunk
         size = chunk.tick_bytes(layout)
-        end_ns = CHUNK_NS + (t_ns if chunk.is_empty else chunk.start_ns)
+        start_ns = t_ns if chunk.is_empty else chunk.start_ns
+        end_ns = start_ns + (WAIT_NS - step_ns if is_writing else CHUNK_NS)
         room = chunk.room(layout, max(1, min(
             CHUNK_TICKS - self._ticks, -((chunk.size - CHUNK_BYTES) // size),
             1 - (t_ns - end_ns) // step_ns)))

@@ -99,7 +99,7 @@ class BagWriter:
         if self._error is not None:
             raise self._error
         try:
-            self._prepare(begins_part=bool(messages))
+            self._prepare(t_ns, begins_part=bool(messages))
             self._hand_over(self._parts[-1].write_tick(t_ns, sequence, messages))
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
@@ -112,7 +112,7 @@ class BagWriter:
         others follow every ``step_ns``. For tick k of them call ``append(room.buffer,
         room.at + k * room.tick_bytes, block, layout, sequence + k, t_ns + k * step_ns)``, then
         `close_stretch` with their number. Until then call nothing else of this writer. The room
-        ends with the tick that completes a chunk.
+        ends with the tick that completes a chunk, or where the chunk before must be written.
 
         Raises
         ------
@@ -123,8 +123,9 @@ class BagWriter:
         if self._error is not None:
             raise self._error
         try:
-            self._prepare(begins_part=True)
-            return self._parts[-1].open_stretch(layout, t_ns, step_ns)
+            self._prepare(t_ns, begins_part=True)
+            return self._parts[-1].open_stretch(
+                layout, t_ns, step_ns, is_writing=self._writing is not None)
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
@@ -145,14 +146,16 @@ class BagWriter:
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
-    def _prepare(self, begins_part: bool) -> None:
+    def _prepare(self, t_ns: int, begins_part: bool) -> None:
         """
         Raise the error of a chunk that was written; begin the next file where one is due.
 
-        With a split size this needs that of the file, and waits for the chunk.
+        With a split size this needs that of the file, and waits for the chunk. So do the last
+        ticks of a chunk: what is not in the file is always less than a second.
         """
         if self._writing is not None and (
-                self._storage.split_bytes is not None or self._writing.done()):
+                self._storage.split_bytes is not None or self._writing.done()
+                or self._parts[-1].must_wait(t_ns)):
             self._end_writing()
         if self._is_full and begins_part:
             self._begin_part()
