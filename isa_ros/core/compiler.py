@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.core.kernel import BEFORE_COMPILING, Entry, Kernel, kernel
 from isa_ros.core.kernel_cache import cache_of
 from isa_ros.core.kinds import Kind, RESULT_WORDS
-from isa_ros.core.words import put_results, TABLE, value_at
+from isa_ros.core.words import put_results, result_kind, TABLE, type_of, value_at
 import numba
 from numba import types
 from numba.extending import typeof_impl
@@ -69,6 +69,14 @@ def compiled_entry(entry: Entry) -> Any:
         compiled.compile((TABLE,))
     made, = compiled.overloads.values()
     return made
+
+
+def result_of(entry: Entry) -> Kind | None:
+    """Return the kind of what the kernel of a called entry returns, None: nothing."""
+    given = tuple(type_of(entry.kind).types)
+    own = entry.kernel.compiled
+    own.compile(given)
+    return result_kind(own.overloads[given].signature.return_type)
 
 
 def address_of(entry: Entry) -> int:

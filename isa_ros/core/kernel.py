@@ -5,13 +5,13 @@ Importing a kernel takes no compiler: its machine code is looked up at the first
 libraries of kernels (`kernel_library`), and only a kernel that none of them has is compiled.
 """
 
-from collections.abc import Callable
-from functools import cached_property, update_wrapper
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property, update_wrapper
 import os
 from typing import Any, NamedTuple, TypeVar
 
 from isa_ros.core.kernel_directory import CACHE, is_kept
-from isa_ros.core.kernel_library import address_in_library, Call, symbol_of
+from isa_ros.core.kernel_library import address_in_library, call_in_library, symbol_of
 from isa_ros.core.kinds import Kind, kind_of, TupleKind, UnknownKind
 
 _Function = TypeVar('_Function', bound=Callable[..., Any])
@@ -42,7 +42,7 @@ class Kernel:
         self.py_func, self.targetoptions = function, options
         self.directory = CACHE
         """Where the compiler keeps it."""
-        self._calls: dict[Any, Call] = {}
+        self._calls: dict[tuple[Kind, ...], Callable[[Sequence[Any]], Any]] = {}
         self._call: Callable[..., Any] = self._from_library
         update_wrapper(self, function)
 
@@ -74,10 +74,12 @@ class Kernel:
             return self.compiled(*arguments, **named)
         return call(arguments)
 
-    def _found(self, kinds: tuple[Kind, ...]) -> Call | None:
+    def _found(self, kinds: tuple[Kind, ...]) -> Callable[[Sequence[Any]], Any] | None:
         entry = Entry(self, TupleKind(tuple, kinds), is_called=True)
-        address = address_in_library(lambda: entry.symbol)
-        return self._calls.setdefault(kinds, Call(address)) if address else None
+        call = call_in_library(entry)
+        if call is not None:
+            self._calls[kinds] = call
+        return call
 
 
 def kernel(function: Callable[..., Any]) -> Any:
@@ -124,14 +126,20 @@ class Entry(NamedTuple):
 
     def is_kept(self) -> bool:
         """Return whether it need not be compiled."""
-        return bool(address_in_library(lambda: self.symbol)) or is_kept(self.compiled)
+        return bool(address_in_library(self)) or is_kept(self.compiled)
 
     def address(self) -> int:
         """Return the address of the machine code; it is loaded, or compiled if need be."""
-        def compiled() -> int:
-            from isa_ros.core.compiler import address_of
-            return address_of(self)
-        return address_in_library(lambda: self.symbol) or compiled()
+        return _address(self)
+
+
+@cache
+def _address(entry: Entry) -> int:
+    found = address_in_library(entry)
+    if found:
+        return found
+    from isa_ros.core.compiler import address_of
+    return address_of(entry)
 
 
 def entry_of(function: Any, kind: Kind) -> Entry:

@@ -24,7 +24,9 @@ import time
 from typing import Any
 
 from isa_ros.core.kernel_directory import digest_text, READ
-from isa_ros.core.kernel_key import is_unchanged, type_text, UnknownValue
+from isa_ros.core.kernel_key import is_unchanged
+from isa_ros.core.kernel_library import SETTINGS
+from isa_ros.core.value_text import type_text, UnknownValue
 import llvmlite
 from llvmlite.binding import parse_bitcode
 import numba
@@ -40,8 +42,6 @@ _NOTED_AFTER = 600.0        # s; a use that soon after the one before is not not
 _KEPT_TIME = 30 * 86400.0   # s, since a kernel was last loaded
 _KEPT_BYTES = 512 << 20     # about thirty times the kernels of this package
 _DIGEST_BYTES = 16
-_SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
-             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
 
 
 @cache
@@ -57,7 +57,7 @@ def environment() -> str:
     settings: Any = numba.config
     return repr((sys.implementation.cache_tag, sys.version_info[:2], numba.__version__,
                  llvmlite.__version__, np.__version__.split('.')[:2],
-                 [str(getattr(settings, name, None)) for name in _SETTINGS]))
+                 [str(getattr(settings, name, None)) for name in SETTINGS]))
 
 
 def _check(name: str, body: bytes | memoryview) -> bytes:

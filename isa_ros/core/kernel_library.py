@@ -10,34 +10,44 @@ from collections.abc import Callable, Sequence
 import ctypes
 from functools import cache
 import hashlib
+import json
 import os
 from pathlib import Path
-import struct
-from typing import Any
+from typing import Any, Protocol
 
-from isa_ros.core.kernel_key import kernel_digest, UnknownValue
-from isa_ros.core.kinds import Kind, kind_text, NOTHING, ONE, RESULT_WORDS, words_of
+from isa_ros.core import kernel_key
+from isa_ros.core.kernel_key import file_digest, source_digest
+from isa_ros.core.kinds import (
+    Kind, kind_of_form, kind_text, RESULT_WORDS, value_of, words_of)
+from isa_ros.core.value_text import UnknownValue
 
 SHIPPED = Path(__file__).parents[1] / 'kernels'
 """The directory of the libraries of this package."""
-_FORM = 1       # of the words of arguments and results
+SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
+            'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
+"""Of numba, that change machine code: with one in the environment all kernels are compiled."""
+_RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
+_MAKERS = ('compiler', 'kinds', 'object_runtime', 'objects', 'words')
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
-_FLOAT, _WORD = struct.Struct('d'), struct.Struct('q')
-_READ: tuple[Callable[[int], Any], ...] = (
-    int, lambda word: word % (1 << 64), lambda word: _FLOAT.unpack(_WORD.pack(word))[0], bool)
-
-
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))
 """Flags of a processor whose machine code may be that of x86-64-v3, as Linux names them."""
 _PROCESSOR = Path('/proc/cpuinfo')
 _FIRST_BYTES = 8192     # with all of the first core
 
 
+class Named(Protocol):
+    """A kernel with the kinds that its machine code is made for: `isa_ros.core.kernel.Entry`."""
+
+    @property
+    def symbol(self) -> str:
+        """Its name in a library, as `symbol_of` has it."""
+
+
 class Call:
     """Machine code of a kernel for one combination of kinds of arguments."""
 
-    def __init__(self, address: int) -> None:
-        self._called = _CALLED(address)
+    def __init__(self, address: int, result: Kind | None) -> None:
+        self._called, self._result = _CALLED(address), result
 
     def __call__(self, arguments: Sequence[Any]) -> Any:
         """Run it and return what the kernel returns."""
@@ -45,11 +55,14 @@ class Call:
         words.extend(words_of(tuple(arguments)))
         table = (ctypes.c_int64 * len(words))(*words)
         self._called(table)
-        count = table[0]
-        if count == NOTHING:
-            return None
-        values = [_READ[table[k]](table[k + 1]) for k in range(1, 1 + 2 * abs(count), 2)]
-        return values[0] if count == ONE else tuple(values)
+        return None if self._result is None else value_of(self._result, iter(table))
+
+
+@cache
+def _makers() -> str:
+    """Return the digest of the sources that make entries of kernels."""
+    own = Path(kernel_key.__file__)
+    return ' '.join(file_digest(str(own.with_name(f'{name}.py'))) for name in _MAKERS)
 
 
 def symbol_of(kernel: Any, form: str, kind: Kind) -> str:
@@ -59,11 +72,16 @@ def symbol_of(kernel: Any, form: str, kind: Kind) -> str:
     Raises
     ------
     UnknownValue
-        The kernel names a value that is not known.
+        The kernel names a value that is not known, or a source is missing.
 
     """
-    text = f'{_FORM} {form} {kernel_digest(kernel).hex()} {kind_text(kind)}'
+    text = f'{_makers()} {form} {source_digest(kernel).hex()} {kind_text(kind)}'
     return f'{kernel.__name__}_{hashlib.sha256(text.encode()).hexdigest()[:32]}'
+
+
+def result_symbol(symbol: str) -> str:
+    """Return the name of the text, in JSON, that has the form of what a kernel returns."""
+    return symbol + _RESULT
 
 
 def own_targets() -> list[str]:
@@ -79,16 +97,40 @@ def own_targets() -> list[str]:
 @cache
 def _libraries() -> tuple[ctypes.CDLL, ...]:
     """Load the fastest library of this package that runs on this processor, if there is one."""
+    if any(f'NUMBA_{name}' in os.environ for name in SETTINGS):
+        return ()
     paths = [SHIPPED / f'{target}.so' for target in own_targets()]
-    return tuple(ctypes.CDLL(str(path)) for path in paths[:1] if path.exists())
+    return tuple(ctypes.CDLL(str(path)) for path in paths if path.exists())[:1]
 
 
-def address_in_library(symbol: Callable[[], str]) -> int:
-    """Return the address of what a symbol names in a library, 0 if none has it."""
+def _found(entry: Named) -> tuple[ctypes.CDLL, str] | None:
+    """Return the library that has an entry, and its symbol; None if there is none."""
     for library in _libraries():
         try:
-            found = library[symbol()]
+            symbol = entry.symbol
+            library[symbol]
         except (AttributeError, UnknownValue):
             continue
-        return ctypes.cast(found, ctypes.c_void_p).value or 0
-    return 0
+        return library, symbol
+    return None
+
+
+def address_in_library(entry: Named) -> int:
+    """Return the address of an entry's machine code in a library, 0 if none has it."""
+    found = _found(entry)
+    return 0 if found is None else _address_of(*found)
+
+
+def _address_of(library: ctypes.CDLL, symbol: str) -> int:
+    return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
+
+
+def call_in_library(entry: Named) -> Callable[[Sequence[Any]], Any] | None:
+    """Return what calls an entry's machine code with its arguments, None if no library has it."""
+    found = _found(entry)
+    if found is None:
+        return None
+    library, symbol = found
+    form = ctypes.string_at(ctypes.addressof(
+        ctypes.c_char.in_dll(library, result_symbol(symbol)))).decode()
+    return Call(_address_of(library, symbol), kind_of_form(json.loads(form)))

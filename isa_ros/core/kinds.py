@@ -1,5 +1,5 @@
 """
-Kinds of arguments: what machine code is made for, and the words that it gets of a value.
+Kinds of values: what machine code is made for, and the words that it gets and gives of them.
 
 A word has 64 bits. An array is its address and shape, and its strides where it has gaps; a
 record its address; a number its bits; a tuple the words of its parts.
@@ -7,16 +7,15 @@ record its address; a number its bits; a tuple the words of its parts.
 
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 import struct
 from typing import Any, NamedTuple
 
-from isa_ros.core.kernel_key import class_text, dtype_text
+from isa_ros.core.value_text import class_text, dtype_text
 import numpy as np
 
-RESULT_WORDS = 17
-"""Words in front of those of arguments, for what a kernel returns: a count, and two for each."""
-NOTHING, ONE = -2, -1
-"""Counts of what a kernel returns, if that is nothing or a number; others are of tuples."""
+RESULT_WORDS = 32
+"""Words in front of those of arguments, for what a kernel returns."""
 _WORD, _FLOAT = struct.Struct('q'), struct.Struct('d')
 _LARGEST = 2 ** 63
 _NUMBERS = {float: np.dtype(np.float64), int: np.dtype(np.int64), bool: np.dtype(np.bool_)}
@@ -108,3 +107,32 @@ def words_of(value: Any) -> Iterator[int]:
         yield from _WORD.unpack(_FLOAT.pack(value))
     else:
         yield int(value)
+
+
+def value_of(kind: Kind, words: Iterator[int]) -> Any:
+    """Return the number or tuple of a kind whose words, as whole numbers with sign, come next."""
+    if isinstance(kind, TupleKind):
+        values = [value_of(part, words) for part in kind.parts]
+        return tuple(values) if kind.form is tuple else kind.form(*values)
+    word = next(words)
+    form = kind.dtype.kind
+    if form == 'f':
+        return _FLOAT.unpack(_WORD.pack(word))[0]
+    return bool(word) if form == 'b' else word % (1 << 64) if form == 'u' else word
+
+
+def result_form(kind: Kind | None) -> Any:
+    """Return the kind of a result as JSON has it; `kind_of_form` is the inverse."""
+    if isinstance(kind, TupleKind):
+        name = '' if kind.form is tuple else f'{kind.form.__module__}:{kind.form.__name__}'
+        return [name, *map(result_form, kind.parts)]
+    return None if kind is None else kind.dtype.str
+
+
+def kind_of_form(form: Any) -> Any:
+    """Return the kind of a result, None: of nothing."""
+    if isinstance(form, list):
+        module, _, name = form[0].partition(':')
+        own = getattr(import_module(module), name) if name else tuple
+        return TupleKind(own, tuple(map(kind_of_form, form[1:])))
+    return None if form is None else NumberKind(np.dtype(form))

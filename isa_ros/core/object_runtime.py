@@ -2,8 +2,8 @@
 The functions of C that machine code of kernels may call, defined here: an object needs no library.
 
 They are LLVM's text. Each gives what C's gives, bit for bit, but for the bits of a NaN: `floor`,
-`ceil`, `fmod` and `frexp` are exact, and the others copy bytes. They are weak and hidden: a
-program that an object is linked into keeps its own.
+`ceil`, `rint`, `fmod` and `frexp` are exact, and the others copy bytes; two are of numba itself.
+They are weak and hidden: a program that an object is linked into keeps its own.
 """
 
 _MAGNITUDE = (1 << 63) - 1
@@ -32,6 +32,22 @@ define weak_odr hidden double @ceil(double %x) nounwind {
   %below = call double @floor(double %opposite)
   %above = fneg double %below
   ret double %above
+}
+"""
+
+# Halves go to even: the sum has no bits for what is less than 1.
+_RINT = """
+define weak_odr hidden double @rint(double %x) nounwind {
+  %size = call double @llvm.fabs.f64(double %x)
+  %has_fraction = fcmp olt double %size, 0x4330000000000000   ; 2^52
+  br i1 %has_fraction, label %round, label %whole
+round:
+  %sum = fadd double %size, 0x4330000000000000
+  %number = fsub double %sum, 0x4330000000000000
+  %signed = call double @llvm.copysign.f64(double %number, double %x)
+  ret double %signed
+whole:
+  ret double %x
 }
 """
 
@@ -203,11 +219,67 @@ define weak_odr hidden ptr @memcpy(ptr %to, ptr %from, i64 %n) nounwind "no-buil
 }
 """
 
+# numba's own: new strides of an array of another shape, here of one without gaps in the order of C
+# only; 0: it has gaps.
+_RESHAPE = """
+define weak_odr hidden i32 @numba_attempt_nocopy_reshape(
+    i64 %n, ptr %lengths, ptr %strides, i64 %new_n, ptr %new_lengths, ptr %new_strides,
+    i64 %item, i32 %is_of_fortran) nounwind {
+start:
+  %is_first_last = icmp ne i32 %is_of_fortran, 0
+  br i1 %is_first_last, label %gaps, label %check
+check:
+  %left = phi i64 [%n, %start], [%axis, %whole]
+  %step = phi i64 [%item, %start], [%larger, %whole]
+  %is_checked = icmp eq i64 %left, 0
+  br i1 %is_checked, label %fill, label %look
+look:
+  %axis = sub i64 %left, 1
+  %length_at = getelementptr i64, ptr %lengths, i64 %axis
+  %stride_at = getelementptr i64, ptr %strides, i64 %axis
+  %length = load i64, ptr %length_at
+  %stride = load i64, ptr %stride_at
+  %is_dense = icmp eq i64 %stride, %step
+  %is_one = icmp eq i64 %length, 1
+  %fits = or i1 %is_dense, %is_one
+  %larger = mul i64 %step, %length
+  br i1 %fits, label %whole, label %gaps
+whole:
+  br label %check
+fill:
+  %new_left = phi i64 [%new_n, %check], [%new_axis, %put]
+  %new_step = phi i64 [%item, %check], [%new_larger, %put]
+  %is_filled = icmp eq i64 %new_left, 0
+  br i1 %is_filled, label %done, label %put
+put:
+  %new_axis = sub i64 %new_left, 1
+  %new_stride_at = getelementptr i64, ptr %new_strides, i64 %new_axis
+  store i64 %new_step, ptr %new_stride_at
+  %new_length_at = getelementptr i64, ptr %new_lengths, i64 %new_axis
+  %new_length = load i64, ptr %new_length_at
+  %new_larger = mul i64 %new_step, %new_length
+  br label %fill
+done:
+  ret i32 1
+gaps:
+  ret i32 0
+}
+"""
+
+# Of an array that a kernel has allocated: none does, so nothing gets here.
+_RELEASE = """
+define weak_odr hidden void @NRT_MemInfo_call_dtor(ptr %array) noreturn nounwind {
+  call void @llvm.trap()
+  unreachable
+}
+"""
+
 _DECLARED = """
+declare void @llvm.trap()
 declare double @llvm.fabs.f64(double)
 declare double @llvm.copysign.f64(double, double)
 declare i64 @llvm.ctlz.i64(i64, i1)
 """
 
-RUNTIME = ''.join((_DECLARED, _FLOOR, _FREXP, _FMOD, _MEMSET, _MEMMOVE))
+RUNTIME = ''.join((_DECLARED, _FLOOR, _RINT, _FREXP, _FMOD, _MEMSET, _MEMMOVE, _RESHAPE, _RELEASE))
 """LLVM's text of all."""

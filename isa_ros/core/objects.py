@@ -8,15 +8,18 @@ the same instructions of LLVM, which nothing may reorder or contract.
 """
 
 from collections.abc import Mapping, Sequence
+import json
 from pathlib import Path
 import shutil
 import subprocess
 import tempfile
 from typing import Any, NamedTuple
 
-from isa_ros.core.compiler import compiled_entry
+from isa_ros.core.compiler import compiled_entry, result_of
 from isa_ros.core.elf import undefined_symbols
 from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel_library import result_symbol
+from isa_ros.core.kinds import result_form
 from isa_ros.core.object_runtime import RUNTIME
 from isa_ros.errors import ConfigError
 import llvmlite.binding as llvm
@@ -62,8 +65,9 @@ def object_of(entries: Mapping[str, Entry], target: Target) -> bytes:
     """
     Return the object file (ELF) of entries by exported names.
 
-    Each has the C signature ``int64_t name(const int64_t *table)``; all else is internal. Entries
-    that are neither compiled nor kept are compiled, and so kept.
+    Each has the C signature ``int64_t name(const int64_t *table)``; all else is internal, but for
+    the text that says what a called entry returns. Entries that are neither compiled nor kept are
+    compiled, and so kept. One that raises an error of Python ends the process.
 
     Raises
     ------
@@ -108,19 +112,49 @@ def _machine(target: Target) -> Any:
         cpu=target.cpu, opt=3, reloc='pic', codemodel='default')
 
 
+_ENTRY = """
+declare i32 @{own}(ptr, ptr, ptr)
+declare void @llvm.trap()
+define i64 @{name}(ptr %table) {{
+  %result = alloca i64
+  %error = alloca ptr
+  store i64 0, ptr %result
+  %status = call i32 @{own}(ptr %result, ptr %error, ptr %table)
+  %is_done = icmp eq i32 %status, 0
+  br i1 %is_done, label %done, label %raised
+raised:
+  call void @llvm.trap()
+  unreachable
+done:
+  %number = load i64, ptr %result
+  ret i64 %number
+}}
+"""
+_TEXT = """
+@{name} = constant [{size} x i8] c"{text}\\00"
+"""
+
+
 def _module_of(name: str, entry: Entry) -> Any:
-    """Return a copy of an entry's module, in which only the entry, renamed, is seen outside."""
+    """Return a module with an entry, of which nothing else is seen outside."""
     made = compiled_entry(entry)
     module = made.library._get_module_for_linking().clone()
-    wrapper = made.fndesc.llvm_cfunc_wrapper_name
+    own = f'own_{name}'
     for function in module.functions:
-        if function.name == wrapper:
-            function.name, function.linkage = name, 'external'
-        elif not function.is_declaration:
-            function.linkage = 'internal'
+        if function.name == made.fndesc.llvm_func_name:
+            function.name = own
+        if not function.is_declaration:
+            function.linkage = 'internal' if function.name != own else 'external'
     for variable in module.global_variables:
         if not variable.is_declaration:
             variable.linkage = 'internal'
+    text = _ENTRY.format(name=name, own=own)
+    if entry.is_called:
+        form = json.dumps(result_form(result_of(entry)))
+        text += _TEXT.format(
+            name=result_symbol(name), size=len(form) + 1, text=form.replace('"', '\\22'))
+    module.link_in(llvm.parse_assembly(text))
+    module.get_function(own).linkage = 'internal'
     return module
 
 

@@ -4,11 +4,12 @@ Values of kernels at an address: how machine code reads words, `kinds`, and writ
 The functions here are known to the compiler only.
 """
 
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
 from isa_ros.core.kinds import (
-    ArrayKind, Kind, NOTHING, NumberKind, ONE, RecordKind, RESULT_WORDS, UnknownKind)
+    ArrayKind, Kind, NumberKind, RecordKind, RESULT_WORDS, TupleKind, UnknownKind)
 import llvmlite.ir as ir
 from numba import typeof, types
 from numba.core import cgutils
@@ -108,7 +109,43 @@ def value_at(kind: Kind, at: int = 0) -> Any:
 
 
 _NUMBERS = (types.int64, types.uint64, types.float64, types.boolean)
-"""Types of results; the place of one is its code."""
+"""Types of results, of 64 bits each."""
+
+
+def result_kind(own: Any) -> Kind | None:
+    """
+    Return the kind of what a kernel returns, by numba's type; None: nothing.
+
+    Raises
+    ------
+    UnknownKind
+        It is neither a number nor a tuple of numbers.
+
+    """
+    own = types.unliteral(own)
+    if own == types.none:
+        return None
+    if isinstance(own, types.BaseTuple):
+        inner: Any = own
+        parts = tuple(map(result_kind, inner.types))
+        form = inner.instance_class if isinstance(own, types.BaseNamedTuple) else tuple
+        if None not in parts:
+            return TupleKind(form, parts)   # type: ignore[arg-type]
+    if own in _NUMBERS:
+        return NumberKind(np.dtype(own.name.replace('boolean', 'bool')))
+    raise UnknownKind(str(own))
+
+
+def _numbers_in(builder: Any, kind: Kind, value: Any) -> Iterator[Any]:
+    """Yield the words of a number or of those in a tuple."""
+    word = ir.IntType(64)
+    if isinstance(kind, TupleKind):
+        for k, part in enumerate(kind.parts):
+            yield from _numbers_in(builder, part, builder.extract_value(value, k))
+    elif kind.dtype.kind == 'f':
+        yield builder.bitcast(value, word)
+    else:
+        yield builder.zext(value, word) if kind.dtype.kind == 'b' else value
 
 
 def _results(typing_context: Any, table: Any, value: Any) -> Any:
@@ -118,26 +155,16 @@ def _results(typing_context: Any, table: Any, value: Any) -> Any:
     Raises
     ------
     UnknownKind
-        The value is neither a number nor a few of them.
+        The value is neither a number nor a tuple of at most `RESULT_WORDS` numbers.
 
     """
-    is_tuple, is_nothing = isinstance(value, types.BaseTuple), value == types.none
-    own = tuple(value.types) if is_tuple else () if is_nothing else (value,)
-    is_plain = not isinstance(value, types.BaseNamedTuple) and set(own) <= set(_NUMBERS)
-    if not is_plain or 1 + 2 * len(own) > RESULT_WORDS:
-        raise UnknownKind(str(value))
-    count = len(own) if is_tuple else NOTHING if is_nothing else ONE
+    kind = result_kind(value)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        given = arguments[1]
-        words = [count]
-        for k, part in enumerate(own):
-            word = builder.extract_value(given, k) if count >= 0 else given
-            word = (builder.bitcast(word, ir.IntType(64)) if part == types.float64
-                    else builder.zext(word, ir.IntType(64)) if part == types.boolean else word)
-            words += [_NUMBERS.index(part), word]
+        words = [] if kind is None else list(_numbers_in(builder, kind, arguments[1]))
+        if len(words) > RESULT_WORDS:
+            raise UnknownKind(f'{len(words)} numbers')
         for k, word in enumerate(words):
-            word = ir.IntType(64)(word) if isinstance(word, int) else word
             builder.store(word, cgutils.gep_inbounds(builder, arguments[0], k))
         return context.get_dummy_value()
     return types.none(table, value), generate

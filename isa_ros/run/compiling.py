@@ -8,7 +8,8 @@ from typing import Any, TextIO
 
 from isa_ros.core.kernel import BEFORE_COMPILING
 from isa_ros.core.kernel_directory import is_kept
-from isa_ros.core.kernel_key import kernels_of, UnknownValue
+from isa_ros.core.kernel_key import kernels_of
+from isa_ros.core.value_text import UnknownValue
 from isa_ros.text.progress import terminal_line
 
 SILENT_S = 2.0  # a shorter compilation, of single small kernels, is not reported

@@ -9,8 +9,9 @@ from typing import Any
 
 from isa_ros.bag.provenance import installed_versions, KERNELS, Provenance
 from isa_ros.core import kernel
-from isa_ros.core.kernel_key import digest_of, is_kernel
+from isa_ros.core.kernel_key import digest_of
 from isa_ros.core.saved_state import RunState
+from isa_ros.core.value_text import is_kernel
 from isa_ros.scenario.scenario import Scenario
 
 _OF_TICK = ('actuator', 'loads', 'plant', 'reu', 'surroundings')

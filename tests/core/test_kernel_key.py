@@ -3,9 +3,9 @@
 import dis
 from typing import NamedTuple
 
-from isa_ros.core import kernel_key
-from isa_ros.core.kernel_key import (
-    is_unchanged, kernel_digest, type_text, UnknownValue, value_text)
+from isa_ros.core import value_text as texts
+from isa_ros.core.kernel_key import is_unchanged, kernel_digest, source_digest
+from isa_ros.core.value_text import type_text, UnknownValue, value_text
 import numba
 import numpy as np
 import pytest
@@ -139,7 +139,7 @@ def test_instructions_are_those_of_dis():
     """Also with arguments of three bytes."""
     code = compile('x = 1\n' + '\n'.join(f'y{k} = {k}.5' for k in range(66_000)), 'large', 'exec')
     left_out = ('EXTENDED_ARG', 'CACHE', 'NOP')
-    assert list(kernel_key._instructions(code)) == [
+    assert list(texts._instructions(code)) == [
         (each.opcode, each.arg or 0) for each in dis.get_instructions(code)
         if each.opname not in left_out]
 

@@ -59,7 +59,6 @@ def solve_symmetric(a, x):
         x[i] /= a[i, i]
 
 
-@kernel
 def hold(a, free, forces):
     """
     Fill the forces F with A F = -free; of several the smallest, scaled by the diagonal of A.

@@ -9,7 +9,7 @@ the actuators in ``ports`` and ``replies``. L13 to L16 are those of the leg for 
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, kernel_function
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
 from isa_ros.surroundings.bodies.robot.motion import (
     let_go, look, move, robot_step, tree_of)
@@ -40,7 +40,7 @@ def motion_part(state, k):
     return state[:len(state) - 4 * k - 1]
 
 
-@kernel
+@kernel_function
 def kept_part(state, k):
     """Return the views of the forces in a state."""
     at = len(state) - 4 * k - 1

@@ -1,0 +1,123 @@
+"""Which machine code the runs of a configuration ask for: a rehearsal in which no kernel runs."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+import ctypes
+from importlib import import_module
+from typing import Any, NamedTuple
+from unittest.mock import patch
+
+import isa_ros
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.config.models.catalogue import model_names
+from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.core import kernel
+from isa_ros.core.bound import run_rounds
+from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel_key import kernels_of
+from isa_ros.core.kinds import Kind
+from isa_ros.core.value_text import UnknownValue
+from isa_ros.errors import ConfigError
+from isa_ros.run.local_run import LocalRun
+from isa_ros.run.warm_up import warmed_up
+from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.coordinating import TickRound
+from isa_ros.scenario.scenario import load_scenario
+from isa_ros.scripting.log import LogSink
+from isa_ros.tick.source import ScheduledSource
+
+ALONE = 'actuators alone'
+"""The rehearsal of every model without a run."""
+_TICKS = 4
+_LARGEST = 65536    # bytes of a message of the wire, of which no kind depends
+
+_NOTHING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)(lambda table: 0)
+_ADDRESS = ctypes.cast(_NOTHING, ctypes.c_void_p).value or 0
+
+
+class Wanted(NamedTuple):
+    """An entry, with its kernel by name: what one process asks another one for."""
+
+    module: str
+    name: str
+    kind: Kind
+    is_called: bool
+    symbol: str
+    size: int
+    """Kernels in it, of which its time of compilation is roughly a multiple."""
+
+    @property
+    def entry(self) -> Entry:
+        """The entry."""
+        return Entry(getattr(import_module(self.module), self.name), self.kind, self.is_called)
+
+
+class _Nowhere:
+    """A recorder that keeps nothing."""
+
+    def write_tick(self, t_ns: int, sequence: int, messages: Sequence[Any]) -> None:
+        """Do nothing."""
+
+
+def rehearsals() -> list[str]:
+    """Return the names of all rehearsals."""
+    return [ALONE, *shipped(CONFIG)]
+
+
+def rehearse(name: str) -> list[Wanted]:
+    """Return the entries that runs of a configuration ask for."""
+    with _noted() as found:
+        if name == ALONE:
+            for model in model_names():
+                SmartActuator(default_actuator(model, model), DEFAULT_TIMING).tick()
+        else:
+            _run(name)
+    return [_wanted(entry) for entry in found.values()]
+
+
+def _run(name: str) -> None:
+    """Take a few ticks of a configuration, in memory, recorded and over sockets."""
+    run = load_run(shipped(CONFIG)[name])
+    for actuator in warmed_up(run)[:1]:
+        AnswerLoop(actuator.ticked, actuator.advance, _LARGEST)
+    simulation = isa_ros.load(name).simulation()
+    TickRound(simulation.loop.rows, 1, [], False, _LARGEST)
+    simulation.loop.sinks = [LogSink(simulation, _TICKS)]
+    simulation.loop.advance_quietly(_TICKS)
+    for path in shipped(SCENARIOS).values():
+        with suppress(ConfigError):     # it is for actuators of another configuration
+            scenario = load_scenario(path, run)
+            LocalRun(scenario.run).simulate(
+                _TICKS, ScheduledSource(scenario.commands, scenario.changes), _Nowhere())
+
+
+@contextmanager
+def _noted() -> Iterator[dict[str, Entry]]:
+    """Note the entries that are asked for; bound kernels do nothing, but for loops of them."""
+    found: dict[str, Entry] = {}
+
+    def note(entry: Entry) -> None:
+        try:
+            found[entry.symbol] = entry
+        except UnknownValue:
+            return      # it is compiled at the user's
+
+    def address_of(entry: Entry) -> int:
+        note(entry)
+        return 0 if entry.kernel is run_rounds else _ADDRESS
+
+    def call_of(entry: Entry) -> Callable[[Sequence[Any]], Any]:
+        note(entry)
+        return lambda arguments: entry.kernel.compiled(*arguments)
+
+    with patch.object(kernel, 'address_in_library', address_of), patch.object(
+            kernel, 'call_in_library', call_of):
+        yield found
+
+
+def _wanted(entry: Entry) -> Wanted:
+    own = entry.kernel
+    return Wanted(own.__module__, own.__name__, entry.kind, entry.is_called, entry.symbol,
+                  len(kernels_of(own)))
