@@ -37,6 +37,7 @@ setup(
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
         'isa_ros': [
+            'kernels/*.so',
             'py.typed', 'config/data/*/*.yaml', 'export/sources/*', 'export/fmi/sources/*',
             'nodes/middleware/*.xml', 'paper/*.yaml'],
         'msg_adapters': ['py.typed'],

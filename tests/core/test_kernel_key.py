@@ -1,6 +1,7 @@
 """What a compiled kernel depends on."""
 
 import dis
+from importlib.util import module_from_spec, spec_from_file_location
 from typing import NamedTuple
 
 from isa_ros.core import value_text as texts
@@ -176,3 +177,50 @@ def test_all_of_a_dtype_is_in_its_text():
              for at, size in ((0, 8), (0, 16), (8, 16))]
     kinds += [np.dtype([('a', 'f8')], align=True)]
     assert len({value_text(kind) for kind in kinds}) == 4
+
+
+def module_of(tmp_path, name, **changes):
+    """Return a module of `SOURCE` in a file of that name."""
+    path = tmp_path / f'{name}.py'
+    path.write_text(SOURCE.format(**FIRST | changes))
+    spec = spec_from_file_location('somewhere', path)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize('changes', [
+    {'remark': '# a remark'}, {'doc': '"""Two."""'}, {'constant': 2.0}, {'added': 2},
+    {'unused': 2}])
+def test_every_edit_of_its_file_changes_the_digest_by_source(tmp_path, changes):
+    first, other = module_of(tmp_path, 'first'), module_of(tmp_path, 'other', **changes)
+    same = module_of(tmp_path, 'same')
+    assert source_digest(first.other) == source_digest(same.other) != source_digest(other.other)
+
+
+def test_a_digest_by_source_has_the_values_that_a_kernel_names(tmp_path):
+    first, second, third = (module_of(tmp_path, name) for name in ('first', 'second', 'third'))
+    second.CONSTANT = 2.0
+    third.callee = third.other
+    assert len({source_digest(own.caller) for own in (first, second, third)}) == 3
+    assert source_digest(first.other) == source_digest(second.other)
+    assert source_digest(first.caller) != source_digest(first.callee)
+
+
+def test_functions_of_other_packages_are_their_names(tmp_path):
+    """Their texts differ from version to version."""
+    first, second = (module_of(tmp_path, name) for name in ('first', 'second'))
+    second.math = type(second.math)('math')
+    second.math.sin = len
+    assert source_digest(first.caller) == source_digest(second.caller)
+
+
+def test_without_a_source_there_is_no_digest_by_it(tmp_path):
+    module = module_of(tmp_path, 'gone')
+    (tmp_path / 'gone.py').unlink()
+    with pytest.raises(UnknownValue, match='^source .*gone.py$'):
+        source_digest(module.caller)
+    space = {'__name__': 'somewhere'}
+    exec(SOURCE.format(**FIRST), space)
+    with pytest.raises(UnknownValue, match='^source <string>$'):
+        source_digest(space['caller'])

@@ -23,7 +23,8 @@ def runtime(tmp_path_factory):
     own = ctypes.CDLL(str(out))
     number = ctypes.c_double
     own.floor.restype = own.ceil.restype = own.fmod.restype = own.numba_frexp.restype = number
-    own.floor.argtypes = own.ceil.argtypes = [number]
+    own.rint.restype = number
+    own.floor.argtypes = own.ceil.argtypes = own.rint.argtypes = [number]
     own.fmod.argtypes = [number, number]
     own.numba_frexp.argtypes = [number, ctypes.POINTER(ctypes.c_int32)]
     return own
@@ -40,10 +41,11 @@ def random_values(n):
     return found[np.isfinite(found)].tolist()
 
 
-@pytest.mark.parametrize('name', ['floor', 'ceil'])
+@pytest.mark.parametrize('name', ['floor', 'ceil', 'rint'])
 def test_whole_numbers(runtime, name):
     own, expected = getattr(runtime, name), getattr(np, name)
     near = np.random.default_rng(5).uniform(-9.0, 9.0, 500).tolist()
+    near += [k / 2 for k in range(-9, 10)]
     for value in VALUES + near + random_values(500):
         assert bits(own(value)) == bits(float(expected(value))), value
     assert math.isnan(own(math.nan))
@@ -92,3 +94,32 @@ def test_a_move_within_itself(runtime, by):
     start = own.ctypes.data + 5
     runtime.memmove(ctypes.c_void_p(start + by), ctypes.c_void_p(start), ctypes.c_int64(10))
     assert own.tolist() == expected.tolist()
+
+
+def strides_of(runtime, array, shape, is_of_fortran=0):
+    """Return the strides that an array of another shape gets, None: it has gaps."""
+    def words(*numbers):
+        return (ctypes.c_int64 * len(numbers))(*numbers)
+    found = words(*[-7] * len(shape))
+    number = ctypes.c_int64
+    done = runtime.numba_attempt_nocopy_reshape(
+        number(array.ndim), words(*array.shape), words(*array.strides), number(len(shape)),
+        words(*shape), found, number(array.itemsize), ctypes.c_int32(is_of_fortran))
+    return tuple(found) if done else None
+
+
+@pytest.mark.parametrize('shape', [(24,), (2, 12), (3, 2, 4), (1, 24, 1)])
+@pytest.mark.parametrize('array', [
+    np.zeros(24), np.zeros((4, 6)), np.zeros((2, 3, 4)), np.zeros((4, 1, 6))[:, ::-1]])
+def test_another_shape_of_an_array_without_gaps(runtime, array, shape):
+    assert strides_of(runtime, array, shape) == np.zeros(shape).strides
+
+
+@pytest.mark.parametrize('array', [
+    np.zeros(48)[::2], np.zeros((4, 7))[:, :6], np.zeros((6, 4)).T, np.zeros(24)[::-1]])
+def test_an_array_with_gaps_keeps_its_shape(runtime, array):
+    assert strides_of(runtime, array, (2, 12)) is None
+
+
+def test_the_order_of_fortran_is_refused(runtime):
+    assert strides_of(runtime, np.zeros(24), (2, 12), is_of_fortran=1) is None
