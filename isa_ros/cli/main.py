@@ -14,8 +14,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
-    bus_commands, commands, host_commands, response_arguments, run_arguments, shared_arguments,
-    talk)
+    bus_commands, commands, export_command, host_commands, response_arguments, run_arguments,
+    shared_arguments, talk)
 from isa_ros.cli.completion.scripts import SHELLS
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
@@ -255,6 +255,8 @@ _COMMANDS = {
     'faults': (_faults, commands.faults,
                'inject every fault of the device into a rig and show its effect'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
+    'export': (export_command.arguments, export_command.export,
+               'write an actuator as a library of C for programs without Python'),
     'draw': (_draw, commands.draw, 'draw the linkages of a body and their levers over the stroke'),
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,

@@ -1,6 +1,6 @@
 """An actuator as a shared library of C: its kernels, and the text beside them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 import re
@@ -54,6 +54,13 @@ def _symbols(word: str, code: str) -> str:
     return f'{{ global: {names} local: *; }};\n'
 
 
+def names_of(own: Exported) -> Sequence[str]:
+    """Return the names of all files of an actuator's library."""
+    word = own.word
+    return (f'{word}.h', f'{word}.c', f'{word}_tables.h', f'{word}.map', f'{word}_kernels.o',
+            f'lib{word}.so', *EXAMPLES)
+
+
 def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str, bytes]:
     """
     Return the files of an actuator's library by name.
@@ -64,7 +71,7 @@ def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str,
         There is no such C compiler, or it fails, with its first line.
 
     """
-    found = compiler_of(compiler)
+    found = compiler_of(compiler, processor_of(target))
     word = own.word
     files = {name: text.encode() for name, text in texts(own).items()}
     files[f'{word}_kernels.o'] = kernels_of(own, target)
@@ -83,19 +90,29 @@ def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str,
     return files
 
 
-def compiler_of(name: str) -> str:
+def processor_of(target: Target) -> str:
+    """Return the processor of a target, as compilers name it."""
+    return target.triple.partition('-')[0]
+
+
+def compiler_of(name: str, processor: str) -> str:
     """
-    Return the path of a C compiler.
+    Return the path of a C compiler for a processor, the first word of its targets' triples.
 
     Raises
     ------
     ConfigError
-        There is none.
+        There is none, or it is for another processor.
 
     """
     found = shutil.which(name)
     if found is None:
         raise ConfigError(f'--compiler {name}: no such C compiler, which builds the library')
+    done = subprocess.run([found, '-dumpmachine'], capture_output=True, text=True)
+    machine = done.stdout.strip()
+    if done.returncode or machine.partition('-')[0] != processor:
+        raise ConfigError(f'--compiler {name} is for {machine or "no known processor"}, must be '
+                          f'a C compiler for {processor}')
     return found
 
 

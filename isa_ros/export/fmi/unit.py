@@ -112,7 +112,7 @@ def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
 
 def library(own: Made, version: Version, compiler: str = 'cc') -> bytes:
     """Return the shared library of a unit; raises as `archive`."""
-    path = compiler_of(compiler)
+    path = compiler_of(compiler, own.processor)
     others = {_shim(other) for other in Version if other is not version}
     with tempfile.TemporaryDirectory() as directory:
         place = Path(directory)

@@ -1,0 +1,57 @@
+"""`isa export`: what it writes, and what it refuses before that."""
+
+from pathlib import Path
+
+from isa_ros.cli.main import main
+from isa_ros.export.library import names_of
+import pytest
+
+
+def refused(capsys, *arguments):
+    """Return the line of a refusal."""
+    try:
+        assert main(['export', *map(str, arguments)]) == 2
+    except SystemExit as ended:
+        assert ended.code == 2
+    printed = capsys.readouterr()
+    assert printed.out == '' and printed.err.count('\n') == 1
+    return printed.err
+
+
+@pytest.mark.slow
+def test_a_library_is_written(tmp_path, capsys):
+    from isa_ros.export.chosen import choose
+    from isa_ros.export.exported import exported
+    out = tmp_path / 'made'
+    assert main(['export', 'rig_linear:ram', '--c', '--out', str(out), '--name', 'ram',
+                 '--set', 'load.inertia=20', '--target', 'x86-64', '--load', 'own']) == 0
+    assert capsys.readouterr().out.splitlines() == [str(out / 'ram.h'), str(out / 'libram.so')]
+    own = exported(choose('rig_linear'), name='ram')
+    assert {path.name for path in out.iterdir()} == {*names_of(own), 'isa_export.json'}
+    tables = (out / 'ram_tables.h').read_text()
+    assert '{"load.inertia", "20", 20.0, "kg", ' in tables
+
+
+def test_what_is_refused(tmp_path, capsys):
+    out = tmp_path / 'out'
+    for arguments, line in (
+            (('isa_v6', '--c'), 'isa: isa_v6: no such file; shipped: '),
+            (('leg:kf', '--c'), "isa: 'kf' is not an actuator of leg; did you mean kfe?\n"),
+            (('isa_v5', '--c', '--compiler', 'no-cc'), 'isa: --compiler no-cc: no such C compi'),
+            (('isa_v5', '--c', '--target', 'arm'), 'isa: --target arm, valid: x86-64-v3, '),
+            (('isa_v5', '--c', '--name', 'A'), "isa: --name 'A', must be "),
+            (('isa_v5', '--c', '--load', 'none'), 'isa export: argument --load: invalid choice'),
+            (('isa_v5', '--c', '--set', 'load'), "isa: --set 'load', must be KEY=VALUE\n"),
+            (('isa_v5',), 'isa export: one of the arguments --c')):
+        assert refused(capsys, *arguments, '--out', out).startswith(line)
+    assert 'required: --out' in refused(capsys, 'isa_v5', '--c')
+    assert not out.exists()
+
+
+def test_foreign_files_stay(tmp_path, capsys):
+    (tmp_path / 'mine.txt').write_text('mine')
+    line = refused(capsys, 'isa_v5', '--c', '--out', tmp_path)
+    assert line.startswith(f'isa: {tmp_path} has files that are not of an export, such as mine')
+    assert [path.name for path in Path(tmp_path).iterdir()] == ['mine.txt']
+    assert 'is a file, must be a directory' in refused(
+        capsys, 'isa_v5', '--c', '--out', tmp_path / 'mine.txt')
