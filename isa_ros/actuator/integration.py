@@ -16,8 +16,8 @@ from isa_ros.loads.forces import LOAD_STATE, own_load_force
 from isa_ros.loads.port import load_acceleration
 from isa_ros.plant.chambers import is_of_volumes
 from isa_ros.plant.energy import ENERGIES
-from isa_ros.plant.plant import (
-    begin_volumes, end_volumes, plant_rates, PLANT_STATE, settle)
+from isa_ros.plant.plant import begin_volumes, end_volumes, PLANT_STATE, settle
+from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.servo_valve import tare_flow
 import numpy as np
 

@@ -206,6 +206,26 @@ def lack_rates(gained_a, gained_b, more_a, more_b, v, chambers):
 
 
 @kernel
+def chamber_rates(of_volumes, gained_a, gained_b, oil_a, oil_b, v, wider_a, wider_b, chambers,
+                  rates):
+    """
+    Write the rates of a `CHAMBERS_STATE`: of its pressures  (C2), or of both `lack`  (C11).
+
+    ``oil_a`` and ``oil_b`` are pressure, elastance and density of each, ``wider_a`` and
+    ``wider_b`` what a spear in the chamber adds to a `lack`, in m3/s.
+    """
+    if of_volumes:
+        rates.p_a = rates.p_b = 0.0
+        rates.cavity_a, rates.cavity_b = lack_rates(
+            gained_a, gained_b, oil_a[2], oil_b[2], v, chambers)
+        rates.cavity_a += wider_a
+        rates.cavity_b += wider_b
+    else:
+        rates.p_a, rates.p_b = oil_a[1] * gained_a, oil_b[1] * gained_b
+        rates.cavity_a = rates.cavity_b = 0.0
+
+
+@kernel
 def hydraulic_force(p_a, p_b, chambers):
     """Return f_h = A_A P_A - A_B P_B in N or Nm  (C3, equations 5 and 6 of the paper)."""
     return chambers.area_a * p_a - chambers.area_b * p_b

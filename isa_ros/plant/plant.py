@@ -15,7 +15,6 @@ from isa_ros.plant import (
     block_valve, chambers, coil, cushion, drives, friction, hose, hysteresis, load_holding,
     mechanics, relief, return_spring, sensors, spool, thermal, valve_record)
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
-from isa_ros.plant.cavitation import contents
 from isa_ros.plant.counterbalance import CounterbalanceHolding
 from isa_ros.plant.cushion_sheets import Cushion, NoneCushion
 from isa_ros.plant.hose import LumpedHoses, NoneHoses
@@ -23,7 +22,7 @@ from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.motor import add_losses, Motor
 from isa_ros.plant.pilot_check import PilotCheckHolding
 from isa_ros.plant.return_spring import CoilSpring, NoneSpring, Spring
-from isa_ros.plant.service_lines import holding_record, hosed_lines, rigid_lines
+from isa_ros.plant.service_lines import holding_record
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -166,98 +165,6 @@ def plant_record(sheet: Plant) -> np.recarray:
         spring=return_spring.spring_record(own_spring),
         **cushion.cushion_records(sheet),
         )], PLANT).view(np.recarray)
-
-
-@kernel
-def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, counts, powers,
-                per_s=0.0):
-    """
-    Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
-
-    ``drive`` is the amplifier's output: a current reference (A), or for an explicit coil a
-    voltage (V). ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
-    in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
-    f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W, if it
-    ``counts``  (E2 to E6). A step ``of_volumes`` has the `lack` of the chambers as their state.
-    ``per_s`` is the elastance of a supply whose pressure moves, in Pa/m3: it is in series with a
-    chamber's where a land smooths its flow (V18).
-    """
-    s, v = y.mechanics.position, y.mechanics.velocity
-
-    coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
-    current = coil.coil_current(y.coil, plant.coil) / plant.coil.parallel
-    if plant.hysteresis.is_on > 0.0:
-        current = hysteresis.magnetised(current, plant.hysteresis)
-    current += spool.null_bias(p_s, p_t, plant.spool)
-    spool.spool_rates(y.spool, current, plant.valve.k_spool, plant.spool, rates.spool)
-
-    if of_volumes:
-        v_a, v_b = cushion.port_volumes(y.cushion.end, s, plant)
-        p_a, per_a, more_a = contents(
-            y.chambers.cavity_a, v_a, y.chambers.p_a, plant.chambers)
-        p_b, per_b, more_b = contents(
-            y.chambers.cavity_b, v_b, y.chambers.p_b, plant.chambers)
-    else:
-        p_a, p_b, more_a, more_b = y.chambers.p_a, y.chambers.p_b, 0.0, 0.0
-        per_a, per_b = chambers.elastances(s, plant.chambers)
-    if plant.hoses.is_on > 0.0:
-        q_a, q_b, q_p, q_t, stored, spilt = hosed_lines(
-            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers,
-            per_s)
-    else:
-        stored = spilt = 0.0
-        q_a, q_b, q_p, q_t = rigid_lines(
-            y, p_a, p_b, per_a + per_s, per_b + per_s, p_s, p_t, plant, rates, counts, powers)
-    in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
-    in_a, in_b, push, lost, kept, wider_a, wider_b = cushion.pass_spears(
-        y.cushion, s, v, (p_a, per_a, more_a, in_a), (p_b, per_b, more_b, in_b), plant,
-        rates.cushion)
-    out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
-    if plant.spring.is_on > 0.0:
-        vent = return_spring.vent_pressure(p_t, plant.spring)
-        out_b = return_spring.vented(p_b, vent, in_b, per_b)
-        pulled = return_spring.spring_force(s, plant.spring)
-        push, kept = push - pulled, kept + pulled * v
-        returned = plant.spring.to_tank * out_b
-    else:
-        vent = p_t
-        out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
-        returned = out_b
-    if of_volumes:
-        rates.chambers.p_a = rates.chambers.p_b = 0.0
-        rates.chambers.cavity_a, rates.chambers.cavity_b = chambers.lack_rates(
-            in_a - out_a, in_b - out_b, more_a, more_b, v, plant.chambers)
-        rates.chambers.cavity_a += wider_a
-        rates.chambers.cavity_b += wider_b
-    else:
-        rates.chambers.p_a = per_a * (in_a - out_a)
-        rates.chambers.p_b = per_b * (in_b - out_b)
-        rates.chambers.cavity_a = rates.chambers.cavity_b = 0.0
-
-    z = y.friction.bristle
-    z_rate = friction.bristle_rate(v, z, plant.friction)
-    rates.friction.bristle = z_rate
-    f_sensor = mechanics.sensor_force(s, v, x_load, v_load, plant.mechanics)
-    f_friction = friction.friction_force(v, z, z_rate, plant.friction)
-    f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
-    rates.mechanics.position = v
-    rates.mechanics.velocity = (
-        chambers.hydraulic_force(p_a, p_b, plant.chambers) + push - f_friction - f_sensor
-        + f_stop
-    ) / plant.mechanics.inertia
-    if counts:
-        powers.throttling += lost
-        powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
-        powers.relief = (p_a - p_t) * out_a + (p_b - vent) * out_b
-        powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b) + kept
-        if plant.hoses.is_on > 0.0:
-            powers.cross_port += spilt
-            powers.compression += stored
-        slip = v - v_load
-        powers.friction = f_friction * v
-        powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
-        powers.work = f_sensor * v_load
-    return f_sensor, q_p, q_t + out_a + returned
 
 
 @kernel

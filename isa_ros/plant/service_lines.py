@@ -127,6 +127,24 @@ def hosed_lines(y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, r
 
 
 @kernel
+def line_flows(y, oil_a, oil_b, v, p_s, p_t, per_s, plant, rates, counts, powers):
+    """
+    Return `hosed_lines`; without hoses `rigid_lines` with nothing stored or lost outside.
+
+    ``oil_a`` and ``oil_b`` are pressure, elastance and `denser` of the chambers.
+    """
+    p_a, per_a, more_a = oil_a
+    p_b, per_b, more_b = oil_b
+    if plant.hoses.is_on > 0.0:
+        return hosed_lines(
+            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers,
+            per_s)
+    q_a, q_b, q_p, q_t = rigid_lines(
+        y, p_a, p_b, per_a + per_s, per_b + per_s, p_s, p_t, plant, rates, counts, powers)
+    return q_a, q_b, q_p, q_t, 0.0, 0.0
+
+
+@kernel
 def sensed_pressures(y, plant):
     """Return both pressures at the sensors: of the hoses, or of the chambers, in Pa."""
     p_a, p_b = y.chambers.p_a, y.chambers.p_b

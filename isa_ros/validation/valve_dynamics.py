@@ -19,7 +19,8 @@ from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.energy import no_powers
-from isa_ros.plant.plant import plant_rates, PLANT_STATE
+from isa_ros.plant.plant import PLANT_STATE
+from isa_ros.plant.rates import plant_rates
 from isa_ros.validation.entry import (
     around, as_printed, at_least, Drawing, Entry, Findings, INPUT, OWN)
 from isa_ros.validation.plots import stacked

@@ -15,7 +15,7 @@ from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.plant.channels import CHANNELS_STATE
-from isa_ros.plant.plant import plant_rates
+from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE

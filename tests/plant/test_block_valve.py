@@ -10,7 +10,8 @@ from isa_ros.plant.block_valve import (
     block_record, blocked_line, drive_block, line_pressure, poppet_conductance, PoppetBlock,
     root_slope, time_to_open)
 from isa_ros.plant.energy import no_powers
-from isa_ros.plant.plant import plant_rates, plant_record, PLANT_STATE
+from isa_ros.plant.plant import plant_record, PLANT_STATE
+from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.servo_valve import conductances, signed_sqrt, smoothing
 import numpy as np
 import pytest

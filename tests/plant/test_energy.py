@@ -5,7 +5,8 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.plant.energy import elastic_energy, log_cosh, no_powers
 from isa_ros.plant.mechanics import play
-from isa_ros.plant.plant import plant_rates, PLANT_STATE
+from isa_ros.plant.plant import PLANT_STATE
+from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.servo_valve import (
     conductances, land_losses, port_flows, root_drops, tare_flow)
 import numpy as np

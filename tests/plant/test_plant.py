@@ -9,7 +9,8 @@ from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.energy import no_powers
-from isa_ros.plant.plant import plant_rates, plant_record, PLANT_STATE
+from isa_ros.plant.plant import plant_record, PLANT_STATE
+from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.rest_oil import rest_pressures
 import numpy as np
 import pytest

@@ -10,7 +10,8 @@ their sums and differences are exact, and so is the comparison.
 from hypothesis import given, strategies as st
 from isa_ros.plant import relief, servo_valve
 from isa_ros.plant.energy import no_powers
-from isa_ros.plant.plant import plant_rates, PLANT_STATE
+from isa_ros.plant.plant import PLANT_STATE
+from isa_ros.plant.rates import plant_rates
 import numpy as np
 import pytest
 from tests.sheets import MODELS, plant_row

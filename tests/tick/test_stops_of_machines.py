@@ -10,10 +10,10 @@ from tests.tick.test_emergency_stop import advance, states, SUPPLY
 LIFT, PORT = 'crane/lift', {'kind': 'moving'}
 CATEGORIES = ('close', 'ramp', 'ramp_and_hold')
 AT = 1.5        # s, of the stop: the boom sinks at 40 mm/s
-CRANE = SUPPLY | {
+CRANE: Tree = SUPPLY | {
     'pressure_mpa': 8.0, 'return_pressure_mpa': 0.1, 'precharge_mpa': 4.0,
     'pump_flow_lpm': 60.0, 'relief_mpa': 9.5, 'port': PORT}
-ROBOT = SUPPLY | {'line_volume_l': 0.2, 'pump_flow_lpm': 30.0, 'port': PORT}
+ROBOT: Tree = SUPPLY | {'line_volume_l': 0.2, 'pump_flow_lpm': 30.0, 'port': PORT}
 
 
 def lowered(category: str, supply: Tree) -> Simulation:
