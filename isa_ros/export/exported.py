@@ -49,8 +49,8 @@ class Exported:
     """Memory of its tick."""
     starting: Called
     """What starts it."""
-    ticking: tuple[Called, ...]
-    """What makes a tick, one after the other."""
+    ticking: Called
+    """What makes a tick."""
 
     @property
     def has_own_load(self) -> bool:
@@ -63,9 +63,9 @@ class Exported:
         return self.chosen.run.step_ns
 
     @property
-    def memories(self) -> tuple[Any, ...]:
-        """Return the memories of all kernels."""
-        return (self.starting.memory, *(own.memory for own in self.ticking))
+    def kernels(self) -> tuple[Called, ...]:
+        """Return all kernels with their memories."""
+        return self.starting, self.ticking
 
 
 def word_of(actuator: str, given: str | None = None) -> str:
@@ -110,7 +110,7 @@ def exported(chosen: Chosen, *, name: str | None = None) -> Exported:
     return Exported(
         chosen, word_of(config.name, name), actuator, start, own,
         Called(start_actuator, _started(config, start, own)),
-        (Called(group_tick, own),))
+        Called(group_tick, own))
 
 
 def _started(config: ActuatorConfig, start: Records, own: Ticked) -> Started:

@@ -28,7 +28,7 @@ def kernels_of(own: Exported, target: Target) -> bytes:
     """Return the object of the kernels of an actuator; those of all are the same."""
     return _object(tuple({
         one.name: entry_of(one.function, kind_of(one.memory))
-        for one in (own.starting, *own.ticking)}.items()), target)
+        for one in own.kernels}.items()), target)
 
 
 @cache

@@ -27,7 +27,7 @@ _EVERYTHING = Bounds(-math.inf, math.inf, '', '')
 
 def tables(own: Exported) -> str:
     """Return the text of the tables, an include file of the source."""
-    layout = Layout(own.memories)
+    layout = Layout(one.memory for one in own.kernels)
     return '\n'.join([
         f'/* Tables of {own.word}: places are bytes from the begin of its memory. */',
         f'#include "{own.word}.h"', '', f'#define ISA(name) {own.word}_##name', '',
@@ -78,19 +78,15 @@ def _places(own: Exported, layout: Layout) -> Iterator[str]:
 
 
 def _kernels(own: Exported, layout: Layout) -> Iterator[str]:
-    """Yield the kernels, and the tables of their memories."""
-    called = (own.starting, *own.ticking)
-    yield from (f'int64_t {name}(const int64_t *table);'
-                for name in dict.fromkeys(one.name for one in called))
-    words = [list(layout.table(one.memory)) for one in called]
+    """Yield the kernels, and the tables of their memories one behind the other."""
+    words = [list(layout.table(one.memory)) for one in own.kernels]
     ends = np.cumsum([0, *map(len, words)])
+    for what, one, at in zip(('START', 'TICK'), own.kernels, ends):
+        yield f'int64_t {one.name}(const int64_t *table);'
+        yield from _defined([(f'{what}_KERNEL', one.name), (f'{what}_TABLE', at)])
     yield '/* Numbers of their tables: a place, whose address it becomes, or a length. */'
     yield from _array('struct word', 'WORDS', [
         f'{{{word.value}, {int(word.is_place)}}}' for table in words for word in table])
-    yield f'#define START_KERNEL {own.starting.name}'
-    yield '#define START_TABLE 0'
-    yield from _array('struct kernel', 'PROGRAM', [
-        f'{{{one.name}, {at}}}' for one, at in zip(own.ticking, ends[1:])])
 
 
 def _image(layout: Layout) -> Iterator[str]:

@@ -103,13 +103,3 @@ def test_words():
         with pytest.raises(ConfigError, match=r'^isa_\w+ is a type of the header; choose'):
             word_of(actuator, given)
     assert word_of('kfe', 'port') == 'port'
-
-
-@pytest.mark.slow
-def test_an_actuator_with_its_supply():
-    own = exported(choose('leg:kfe'), with_supply=True)
-    names = [one.name for one in own.ticking]
-    assert names.index('kernel_group_tick') not in (0, len(names) - 1)
-    assert own.supply['pressure'][0] == 20.7e6
-    with pytest.raises(ConfigError, match='^.*: its supply .* is a circuit, must be'):
-        exported(choose('crane_circuit:crane/lift'), with_supply=True)

@@ -14,7 +14,6 @@
 #include <stdint.h>
 
 struct word { int64_t value; int is_place; };
-struct kernel { int64_t (*run)(const int64_t *table); size_t table; };
 struct image { size_t place; uint64_t bits; };
 struct part { size_t place, bytes; };
 struct check { size_t at, count, bytes; int64_t largest; };
@@ -178,8 +177,7 @@ ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_
        sizeof *port);
   copy(self->block + AT_FEED, feed ? feed : &held, sizeof *feed);
   copy(self->block + AT_COMMAND, &own, sizeof own);
-  for (size_t k = 0; k < COUNT(PROGRAM) && !self->diverged; k++)
-    self->diverged = PROGRAM[k].run(self->tables + PROGRAM[k].table);
+  self->diverged = TICK_KERNEL(self->tables + TICK_TABLE);
   return (int)self->diverged;
 }
 
