@@ -32,14 +32,16 @@ setup(
     long_description_content_type='text/markdown',
     maintainer='isa_ros maintainers',
     maintainer_email='isa_ros@users.noreply.github.com',
-    license='Apache-2.0',
+    license='Apache-2.0 AND MIT',    # MIT: uPlot, in isa_ros/vendor
+    license_files=['LICENSE', 'isa_ros/vendor/*/LICENSE'],
     python_requires='>=3.10',
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
         'isa_ros': [
             'kernels/*.so',
-            'py.typed', 'config/data/*/*.yaml', 'export/sources/*', 'export/fmi/sources/*',
-            'nodes/middleware/*.xml', 'paper/*.yaml'],
+            'py.typed', 'analysis/report/browser/*', 'config/data/*/*.yaml', 'export/sources/*',
+            'export/fmi/sources/*', 'nodes/middleware/*.xml', 'paper/*.yaml', 'vendor/*.json',
+            'vendor/*/*'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[

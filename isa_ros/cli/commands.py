@@ -40,10 +40,9 @@ def simulating(command: Command) -> Command:
 @simulating
 def demo(options: Namespace) -> bool:
     """Drop the leg, in four processes, print what happened, and draw the report of the bag."""
-    from isa_ros.analysis.report.energy import energy_text
+    from isa_ros.analysis.report.energy import text_of
     from isa_ros.analysis.report.outcome import outcome
-    from isa_ros.analysis.report.report import write_report
-    from isa_ros.analysis.signals.signals import read_signals
+    from isa_ros.analysis.report.report import recorded as read_recorded, write_report
     from isa_ros.cli.next_steps import next_steps_text
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
@@ -51,9 +50,10 @@ def demo(options: Namespace) -> bool:
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone)).out
-    page, *figures = write_report(bag, out / 'report.html')
-    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}\n')
-    print(f'{energy_text(bag)}\n\n{next_steps_text(bag)}')
+    found = read_recorded(bag)
+    page, *figures = write_report(found, out / 'report.html')
+    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(found.signals)}\n')
+    print(f'{text_of(found.accounts)}\n\n{next_steps_text(bag)}')
     return True
 
 
@@ -162,24 +162,22 @@ def compare(options: Namespace) -> bool:
 
 
 def report(options: Namespace) -> bool:
-    """Draw the figures of a bag; print how it ended, what its devices did, where energy went."""
-    from isa_ros.analysis.report.ending import ending
-    from isa_ros.analysis.report.energy import energy_text
-    from isa_ros.analysis.report.events import events_text, recorded_events
-    from isa_ros.analysis.report.report import another_version, write_report
-    from isa_ros.analysis.signals.signals import read_signals
-    from isa_ros.bag.reader import Bag
+    """Draw the report of a bag; print its verdict, what its devices did, where energy went."""
+    from isa_ros.analysis.report.energy import text_of
+    from isa_ros.analysis.report.events import events_text
+    from isa_ros.analysis.report.report import another_version, recorded as read_recorded
+    from isa_ros.analysis.report.report import write_report
     bag: Path = options.bag
+    found = read_recorded(bag)
     page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
-    paths = write_report(bag, page)
-    if ended := ending(Bag(bag)):
-        print_line(ended)
-    for path in paths:
-        print(path)
-    signals = read_signals(bag, needs_values=False)
-    if signals.problem:
-        print_line(another_version(signals))
-    for table in (events_text(recorded_events(Bag(bag), signals.run)), energy_text(bag)):
+    for path in write_report(found, page):
+        print(one_line(str(path)))
+    if found.signals.problem:
+        print_line(another_version(found.signals))
+    print()
+    for statement in found.verdict:
+        print(one_line(statement.text))
+    for table in (events_text(found.events), text_of(found.accounts)):
         if table:
             print(f'\n{table}')
     return True

@@ -25,7 +25,7 @@ def test_the_paths_are_two_lines_and_a_table_follows(tmp_path, monkeypatch, caps
     assert commands.demo(Namespace(out=out, is_alone=False))
     bag, page, _, header, rotor, *rest = capsys.readouterr().out.splitlines()
     assert bag == str(out / 'bag')
-    n_figures = len(list(out.glob('*.png')))
+    n_figures = len([*out.glob('*.png'), *out.glob('*.svg')])
     assert page == f'{out / "report.html"}, and {n_figures} figures beside it'
     assert header.split()[:3] == ['from', 'to', 'peak'] and rotor.startswith('rotor ')
     assert rest[-len(next_steps(out)) - 1] == 'what to try next:'

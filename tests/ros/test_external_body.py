@@ -37,6 +37,5 @@ def test_a_body_is_named_when_it_is_silent_and_when_it_breaks(
         assert 'out: no answer' not in run.errors and 'Wire' not in run.errors
     assert replay(Bag(bag)).is_equal
     assert main(['report', str(bag)]) == 0
-    assert capsys.readouterr().err.startswith(f'isa: The run ended by an error: {BROKEN}.')
-    assert f'<p><b>The run ended by an error: {BROKEN}.</b></p><p>' in (
-        bag / 'report.html').read_text()
+    assert f'\n\nThe run ended by an error: {BROKEN}.\n' in capsys.readouterr().out
+    assert '<li class="bad">The run ended by an error: ' in (bag / 'report.html').read_text()

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import isa_ros
-from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.controller import Setpoint, State
@@ -103,8 +103,8 @@ def test_a_filter_by_the_names_of_a_robots_own_file_matches_no_topic(bag):
 
 
 def test_the_report_of_a_bag_draws_each_actuator(bag, tmp_path):
-    names = {path.name for path in write_report(bag, tmp_path / 'page.html')}
-    assert {'page_r1_kfe.png', 'page_r2_kfe.png', 'page_r1.png'} <= names
+    names = {path.name for path in write_report(recorded(bag), tmp_path / 'page.html')}
+    assert {'page_r1_kfe.png', 'page_r2_kfe.svg', 'page_r1.png'} <= names
     assert 'r1/kfe' in (tmp_path / 'page.html').read_text()
 
 

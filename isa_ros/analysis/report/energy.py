@@ -1,7 +1,6 @@
 """Oil and energy of a run, from the diagnostics of its bag, as a table: actuators, supplies."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.bag.provenance import CONFIGURATION
@@ -62,17 +61,8 @@ def recorded_accounts(bag: Bag) -> Accounts | None:
         raise BagError(f'{bag.place_of(last)}: {error}') from error
 
 
-def energy_text(bag: Path) -> str:
-    """
-    Return the table of a bag as text; empty for a bag without diagnostics.
-
-    Raises
-    ------
-    BagError
-        The bag cannot be read.
-
-    """
-    accounts = recorded_accounts(Bag(bag))
+def text_of(accounts: Accounts | None) -> str:
+    """Return the table of the accounts of a bag as text; '' for a bag without diagnostics."""
     if accounts is None:
         return ''
     parts = parts_table(accounts)

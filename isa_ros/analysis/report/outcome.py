@@ -1,27 +1,13 @@
 """Results of a run as a table of text: motion, force, pressure, settling and oil."""
 
+from isa_ros.analysis.report.key_figures import settling_time
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LITRE, MILLI, MPA
 from isa_ros.text.table import aligned, digits
 import numpy as np
 
-SETTLED = 0.02  # of the motion: the usual band about the final value
 _HEADER = ('', 'from', 'to', '', 'peak', '', 'pressure, MPa', 'settled, s', 'oil, l')
-
-
-def settling_time(t: np.ndarray, x: np.ndarray) -> float | None:
-    """
-    Return the time from which on ``x`` stays within 2 % of its range about its last value.
-
-    None: it does not move, or has not settled before the last tenth of the time.
-    """
-    band = SETTLED * float(np.ptp(x))
-    outside = np.flatnonzero(np.abs(x - x[-1]) > band)
-    if band == 0.0 or outside.size == 0:
-        return None
-    settled = float(t[outside[-1] + 1])
-    return settled if settled < t[0] + 0.9 * (t[-1] - t[0]) else None
 
 
 def outcome(signals: Signals) -> str:

@@ -58,6 +58,6 @@ def test_a_bag_that_was_cut_short_is_told_first(
     remark = 'The bag was cut short, its recorder was killed; `isa recover` completes it.'
     assert ending(Bag(own)) == remark
     assert main(['report', str(own)]) == 0
-    assert capsys.readouterr().err.startswith(f'isa: {remark}\n')
+    assert f'\n\n{remark}\nNothing tripped.\n' in capsys.readouterr().out
     page = (own / 'report.html').read_text()
-    assert f'</h1><p><b>{remark}</b></p><p>' in page
+    assert f'<ul class="verdict"><li class="bad">{remark}</li>' in page

@@ -2,8 +2,8 @@
 
 import isa_ros
 from isa_ros.analysis.report.energy import (
-    Accounts, energy_table, energy_text, HEADER, recorded_accounts)
-from isa_ros.analysis.report.report import write_report
+    Accounts, energy_table, HEADER, recorded_accounts, text_of)
+from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.bag.reader import Bag
 from isa_ros.core.accounts import ENERGY, HELD, PUMP, SHARES, SUPPLY_SHARES
 import pytest
@@ -43,10 +43,10 @@ def test_the_shares_are_those_of_the_columns(drop, bag):
 
 
 def test_text_and_page_have_it(bag, tmp_path):
-    text = energy_text(bag).splitlines()
+    text = text_of(recorded_accounts(Bag(bag))).splitlines()
     assert text[0].split()[:2] == ['oil,', 'l'] and text[3].startswith('kfe ')
     assert text[5].startswith('up to t = 0.300 s')
-    page = write_report(bag, tmp_path / 'page.html')[0].read_text()
+    page = write_report(recorded(bag), tmp_path / 'page.html')[0].read_text()
     assert '<h2>Oil and energy</h2>' in page and '<td>kfe</td>' in page
 
 

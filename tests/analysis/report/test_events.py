@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.analysis.report.events import event_rows, events_text, MOST, recorded_events
-from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.bag.reader import Bag
 from isa_ros.run.events import Event
 from isa_ros.scripting.run import load
@@ -70,9 +70,13 @@ def test_a_bag_has_the_same_events_and_trips_as_the_result(bag, result):
 
 
 def test_a_report_has_them_as_a_table_and_marks_the_trips_in_the_figure(bag, tmp_path):
-    page, *_ = write_report(bag, tmp_path / 'report.html')
+    page, *_ = write_report(recorded(bag), tmp_path / 'report.html')
     text = page.read_text()
-    assert '<h2>Events</h2><table>' in text and '<td>load_cell_implausible, force that' in text
+    assert '<h2>Events</h2><div class="scroll"><table>' in text
+    assert '>load_cell_implausible, force that the pressures' in text
+    assert '<li class="bad">Tripped: ram, load_cell_implausible, force that' in text
+    trip, = (own for own in isa_ros.read(bag).events if own.kind == 'trip')
+    assert f'<tr data-t="{trip.t_s:.9g}"><td>{trip.t_s:.6f}</td><td>ram</td><td>trip</td>' in text
     assert events_text(isa_ros.read(bag).events).startswith('t, s      of')
 
 

@@ -1,7 +1,8 @@
 """The table of what happened, from signals whose values are known."""
 
 import isa_ros
-from isa_ros.analysis.report.outcome import outcome, SETTLED, settling_time
+from isa_ros.analysis.report.key_figures import SETTLED, settling_time
+from isa_ros.analysis.report.outcome import outcome
 from isa_ros.analysis.signals.signals import signals_of
 import numpy as np
 import pytest

@@ -2,7 +2,7 @@
 
 from isa_ros.analysis.report.characteristics import RESPONSES
 from isa_ros.analysis.report.paper_figures import LAYOUTS, paper_figure, shown
-from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
@@ -61,8 +61,9 @@ def test_an_unknown_figure_is_refused(step):
 
 
 def test_the_report_begins_with_the_figure_of_the_scenario(step, tmp_path):
-    written = write_report(step.save(tmp_path / 'bag'), tmp_path / 'page.html')
+    written = write_report(recorded(step.save(tmp_path / 'bag')), tmp_path / 'page.html')
     assert [path.name for path in written] == [
-        'page.html', 'page_torque_step.png', 'page_rotor.png']
+        'page.html', 'page_torque_step.png', 'page_torque_step.svg', 'page_rotor.png',
+        'page_rotor.svg']
     page = written[0].read_text()
-    assert page.index('alt="torque_step"') < page.index('alt="rotor"')
+    assert page.index('<img alt="torque_step" src="data:image/png;') < page.index('<main>')

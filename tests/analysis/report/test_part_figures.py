@@ -3,10 +3,15 @@
 from pathlib import Path
 
 import isa_ros
-from isa_ros.analysis.report.energy import energy_text, PARTS_LEGEND
-from isa_ros.analysis.report.figures import actuator_figure, circuit_figure, figures
-from isa_ros.analysis.report.report import extremes, write_report
+from isa_ros.analysis.report.actuator_panels import actuator_group
+from isa_ros.analysis.report.circuit_panels import circuit_group
+from isa_ros.analysis.report.energy import PARTS_LEGEND, recorded_accounts, text_of
+from isa_ros.analysis.report.extremes import extremes
+from isa_ros.analysis.report.groups import groups_of
+from isa_ros.analysis.report.panels import Group, Panel
+from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.analysis.signals.signals import read_signals, Signals, signals_of
+from isa_ros.bag.reader import Bag
 import numpy as np
 import pytest
 
@@ -18,16 +23,21 @@ def station() -> isa_ros.Result:
         faults=[{'t_s': 0.02, 'supply': 'station', 'set': {'dump.opened': 1}}])
 
 
-def curves(ax: object) -> dict[str, np.ndarray]:
-    return {line.get_label(): line.get_ydata() for line in ax.get_lines()}
+def curves(panel: Panel) -> dict[str, np.ndarray]:
+    return {own.label: own.signal.values / panel.scale for own in panel.curves}
+
+
+def panel_of(group: Group, title: str) -> Panel:
+    found, = (own for own in group.panels if own.title == title)
+    return found
 
 
 def test_a_circuit_has_one_figure_with_pressures_and_temperatures(
         station: isa_ros.Result) -> None:
     signals = signals_of(station)
-    drawn = figures(signals)
+    drawn = {own.name: own for own in groups_of(signals)}
     assert list(drawn) == ['left', 'right', 'clamp', 'station']
-    pressure, back, gas = (curves(ax) for ax in drawn['station'].axes)
+    pressure, back, gas = (curves(own) for own in drawn['station'].panels)
     assert list(pressure) == ['gallery', 'stored', 'press', 'branch', 'tool']
     assert list(back) == ['drain']
     for name, values in {**pressure, **back}.items():
@@ -35,9 +45,9 @@ def test_a_circuit_has_one_figure_with_pressures_and_temperatures(
     assert list(gas) == ['buffer', 'tool_buffer']
     assert (gas['buffer'] == station['station/buffer.gas_temperature']).all()
     assert gas['buffer'][-1] < 10.0 < gas['buffer'][0]
-    labels = [ax.get_ylabel() for ax in drawn['station'].axes]
-    assert labels == [
+    assert [own.label for own in drawn['station'].panels] == [
         'pressure, MPa gauge', 'return side, MPa gauge', 'temperature of gas, celsius']
+    assert drawn['station'].sources == ('station',)
 
 
 def test_axes_without_curves_are_left_out(station: isa_ros.Result) -> None:
@@ -47,21 +57,21 @@ def test_axes_without_curves_are_left_out(station: isa_ros.Result) -> None:
         some = Signals(all_of_it.run, {
             name: all_of_it.over_time(name) for name in all_of_it
             if name.endswith(kept)}, all_of_it.time, 'some')
-        ax, = circuit_figure(supply, some).axes
-        assert len(ax.get_lines()) == n_curves
+        panel, = circuit_group(supply, some).panels
+        assert len(panel.curves) == n_curves
         begin = {'gas_temperature': 'temp', 'tool.pressure': 'pressure'}.get(kept, 'return side')
-        assert ax.get_ylabel().startswith(begin)
+        assert panel.title.startswith(begin)
     none = Signals(all_of_it.run, {}, all_of_it.time, 'none')
-    assert 'station' not in figures(none)
+    assert 'station' not in [own.name for own in groups_of(none)]
 
 
 def test_the_page_has_its_figure_and_its_extremes(
         station: isa_ros.Result, tmp_path: Path) -> None:
     bag = station.save(tmp_path / 'bag')
-    written = write_report(bag, tmp_path / 'page.html')
+    written = write_report(recorded(bag), tmp_path / 'page.html')
     assert 'page_station.png' in [path.name for path in written]
     assert 'below 0 heat that gas has taken up' in written[0].read_text()
-    assert energy_text(bag).endswith(PARTS_LEGEND)
+    assert text_of(recorded_accounts(Bag(bag))).endswith(PARTS_LEGEND)
     rows = {name: (low, high, unit) for name, low, high, unit in extremes(read_signals(bag))}
     press = station['station/press.pressure'] / 1e6
     assert rows['station/press pressure'] == (
@@ -72,7 +82,7 @@ def test_the_page_has_its_figure_and_its_extremes(
 
 def test_other_supplies_have_no_figure() -> None:
     signals = signals_of(isa_ros.load('leg', duration=0.002).simulate())
-    assert list(figures(signals)) == ['leg', 'haa', 'hfe', 'kfe']
+    assert [own.name for own in groups_of(signals)] == ['leg', 'haa', 'hfe', 'kfe']
 
 
 def test_a_cushion_is_drawn_while_its_spear_is_in() -> None:
@@ -80,7 +90,7 @@ def test_a_cushion_is_drawn_while_its_spear_is_in() -> None:
     result = isa_ros.load('press', 'press_stroke', duration=0.3).simulate()
     signals = signals_of(result)
     own, = signals.run.actuators
-    _, _, pressure, _ = actuator_figure(own, signals).axes
+    pressure = panel_of(actuator_group(own, signals), 'pressure')
     drawn, true = curves(pressure)['cushion'], result['slide.cushion_pressure']
     assert list(curves(pressure)) == ['A', 'B', 'supply', 'cushion']
     assert 0 < (true == 0.0).sum() < len(true) and (np.isnan(drawn) == (true == 0.0)).all()
@@ -95,11 +105,12 @@ def test_pressures_of_hoses_are_said_to_be_those() -> None:
                            ('rig_cylinder', ['A', 'B', 'supply'])):
         signals = signals_of(isa_ros.load(name, duration=0.002).simulate())
         own, = signals.run.actuators
-        assert list(curves(actuator_figure(own, signals).axes[2])) == expected
+        assert list(curves(panel_of(actuator_group(own, signals), 'pressure'))) == expected
 
 
 def test_without_one_there_is_no_curve() -> None:
     signals = signals_of(isa_ros.load('rig_linear', duration=0.01).simulate())
     own, = signals.run.actuators
-    assert list(curves(actuator_figure(own, signals).axes[2])) == ['A', 'B', 'supply']
+    assert list(curves(panel_of(actuator_group(own, signals), 'pressure'))) == [
+        'A', 'B', 'supply']
     assert not any('cushion' in name for name, *_ in extremes(signals))

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.analysis.report.energy import (
-    energy_table, energy_text, parts_table, recorded_accounts)
+    energy_table, parts_table, recorded_accounts, text_of)
 from isa_ros.analysis.signals.recorded_result import read as read_bag
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
@@ -156,7 +156,7 @@ def test_a_report_has_a_table_of_the_parts(result: Result, tmp_path: Path) -> No
     pump = result.accounts['station/pump']
     assert float(by_name['station/pump']['given, J']) == pytest.approx(pump['pump (J)'], rel=1e-2)
     assert float(by_name['station/emptied']['lost, J']) > 0.0
-    assert energy_text(tmp_path / 'bag').count('station/') == len(rows) - 1
+    assert text_of(recorded_accounts(Bag(tmp_path / 'bag'))).count('station/') == len(rows) - 1
     whole = by_name['station']
     given = float(whole['given, J']) + float(whole['held, J'])
     # rounded to three digits each

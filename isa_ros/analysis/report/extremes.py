@@ -1,0 +1,46 @@
+"""Extreme values of the signals of a run, as recorded."""
+
+from isa_ros.analysis.report.circuit_panels import circuit_signals
+from isa_ros.analysis.signals.signals import Signals
+from isa_ros.config.runs.supplies import GAS
+from isa_ros.core.units import MPA
+import numpy as np
+
+HEADER = ('signal', 'least', 'greatest', 'unit')
+
+
+def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
+    """Return (signal, least, greatest, unit) of actuators, circuits and ground, as recorded."""
+    values = []
+    for actuator in signals.run.actuators:
+        name = actuator.name
+        pressures = [signals.drawn(f'{name}.pressure_{side}').values / MPA for side in 'ab']
+        for signal, series, unit in (
+                *((field, signals[f'{name}.{field}'], signals.unit(f'{name}.{field}'))
+                  for field in ('position', 'force') if f'{name}.{field}' in signals),
+                ('pressure', np.concatenate(pressures), 'MPa gauge')):
+            if len(series):
+                values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
+        cushion = signals.drawn(f'{name}.cushion_pressure').values / MPA
+        if cushion.any():
+            values.append((f'{name} cushion pressure', 0.0, float(cushion.max()), 'MPa gauge'))
+    for supply in signals.run.supplies:
+        for name, recorded in circuit_signals(supply, signals).items():
+            is_gas = name.endswith(GAS)
+            series = recorded.values if is_gas else recorded.values / MPA
+            values.append((
+                f'{name.rpartition(".")[0]} {"gas temperature" if is_gas else "pressure"}',
+                float(series.min()), float(series.max()), 'celsius' if is_gas else 'MPa gauge'))
+    for leg in signals.run.legs:
+        if f'{leg.name}.foot_force' not in signals:
+            continue
+        ground = signals[f'{leg.name}.foot_force'][:, 2]
+        values.append((
+            f'{leg.prefix}ground force', float(ground.min()), float(ground.max()), 'N'))
+    return values
+
+
+def extreme_rows(signals: Signals) -> list[tuple[str, ...]]:
+    """Return the rows of a table, the header first."""
+    return [HEADER, *((signal, f'{least:.4g}', f'{greatest:.4g}', unit)
+                      for signal, least, greatest, unit in extremes(signals))]

@@ -1,0 +1,161 @@
+"""Key figures of a run: landing of a body; motion, peaks, tracking, ripple of each actuator."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from isa_ros.analysis.signals.frequency import ripple
+from isa_ros.analysis.signals.signals import Signals
+from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.core.units import LITRE, MILLI, MPA
+from isa_ros.reu.wiring import active
+from isa_ros.text.table import Cells, digits
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+SETTLED = 0.02  # of the motion: the usual band about the final value
+END = 0.1       # of the time, in which what has settled is looked at for ripple
+TOUCHES = 1.0   # N: a smaller force of the ground is no contact
+HEADER = ('', 'from', 'to', '', 'speed, 1/s', 'peak force', '', 'pressure, MPa',
+          'position error', 'force error', 'settled, s', 'ripple', 'oil, l')
+LANDING_HEADER = ('contact', 'landing, s', 'peak, N', 'at, s', 'in contact')
+LEGEND = (
+    'speed and peak: greatest magnitudes; pressure: gauge; error: of reference and measurement, '
+    'rms and at most, where a loop has both; settled: within 2 % of the motion; ripple: half of '
+    'peak to peak of the force in the last tenth of the time, if settled; oil: drawn from the '
+    'supply')
+
+
+class TrackingError(NamedTuple):
+    """How far a measurement is from its reference, SI."""
+
+    rms: float
+    most: float
+    t_s: float
+    """When it is greatest."""
+
+
+class Landing(NamedTuple):
+    """The first contact of a foot after it was in the air, and its greatest force."""
+
+    body: str
+    contact: str
+    t_s: float | None
+    """None: it touched from the beginning, or never."""
+    peak: float
+    """Magnitude, N."""
+    peak_t_s: float
+    share: float
+    """Of the time in contact."""
+
+
+def settling_time(t: Floats, x: Floats) -> float | None:
+    """
+    Return the time from which on ``x`` stays within 2 % of its range about its last value.
+
+    None: it does not move, or has not settled before the last tenth of the time.
+    """
+    band = SETTLED * float(np.ptp(x))
+    outside = np.flatnonzero(np.abs(x - x[-1]) > band)
+    if band == 0.0 or outside.size == 0:
+        return None
+    settled = float(t[outside[-1] + 1])
+    return settled if settled < t[0] + (1.0 - END) * (t[-1] - t[0]) else None
+
+
+def error_of(signals: Signals, actuator: str, field: str) -> tuple[Floats, Floats] | None:
+    """Return times and reference less measurement, SI, (n,) each; None: not recorded together."""
+    measured = signals.drawn(f'{actuator}.{field}')
+    reference = signals.drawn(f'{actuator}.{field}_reference')
+    if not len(measured.t) or not np.array_equal(measured.t, reference.t):
+        return None
+    return measured.t, reference.values - measured.values
+
+
+def tracking_error(error: tuple[Floats, Floats]) -> TrackingError:
+    """Return the figures of an error over time."""
+    t, values = error
+    k = int(np.argmax(np.abs(values)))
+    return TrackingError(
+        float(np.sqrt(np.mean(values * values))), float(abs(values[k])), float(t[k]))
+
+
+def landings(signals: Signals) -> Iterator[Landing]:
+    """Yield the contacts of the run's bodies that were recorded."""
+    for body in signals.run.bodies:
+        for name in contacts_of(body):
+            signal = signals.drawn(f'{body.name}.{name}')
+            if len(signal.t):
+                yield _landing(body, name, signal.t, np.linalg.norm(signal.values[:, :3], axis=1))
+
+
+def landing_rows(signals: Signals) -> list[Cells]:
+    """Return a row for each contact, the header first; empty without contacts."""
+    rows = [(f'{own.body}.{own.contact}', '-' if own.t_s is None else f'{own.t_s:.3f}',
+             digits(own.peak, 4), f'{own.peak_t_s:.3f}', f'{100.0 * own.share:.0f} %')
+            for own in landings(signals)]
+    return [LANDING_HEADER, *rows] if rows else []
+
+
+def contacts_of(body: BodyConfig) -> list[str]:
+    """Return the fields of a body that are forces of contacts, or begin with one."""
+    return [field.name for field in body.fields
+            if field.unit in ('N', 'N, Nm') and field.shape in ((3,), (6,))
+            and field.name.endswith(('force', 'wrench'))]
+
+
+def _landing(body: BodyConfig, name: str, t: Floats, force: Floats) -> Landing:
+    is_down = force > TOUCHES
+    first = np.flatnonzero(is_down[1:] & ~is_down[:-1])
+    peak = int(np.argmax(force))
+    return Landing(body.name, name, float(t[first[0] + 1]) if len(first) else None,
+                   float(force[peak]), float(t[peak]), float(np.mean(is_down)))
+
+
+def key_rows(signals: Signals) -> list[Cells]:
+    """Return a row for each actuator, below `HEADER`."""
+    return [HEADER, *(_row(signals, own) for own in signals.run.actuators)]
+
+
+def _row(signals: Signals, own: ActuatorConfig) -> Sequence[str]:
+    scale, unit = (float(np.degrees(1.0)), 'deg') if own.sheet.is_rotary else (1 / MILLI, 'mm')
+
+    def of(field: str) -> Floats:
+        return signals.drawn(f'{own.name}.{field}').values
+    x, pressures = of('position'), np.concatenate([of('pressure_a'), of('pressure_b')]) / MPA
+    oil, settled = of('supply_volume'), _settled(signals, own)
+    newton = signals.unit(f'{own.name}.force')
+    return (
+        own.name, *((f'{x.min() * scale:.1f}', f'{x.max() * scale:.1f}') if len(x) else '--'),
+        unit, _peak(of('velocity') * scale), _peak(of('force')), newton,
+        f'{pressures.min():.1f} to {pressures.max():.1f}' if len(pressures) else '-',
+        _error(signals, own, 'position', scale, unit), _error(signals, own, 'force', 1.0, newton),
+        '-' if settled is None else f'{settled:.3f}',
+        '-' if settled is None else digits(ripple_at_end(of('force')), 2),
+        f'{oil[-1] / LITRE:.3f}' if len(oil) else '-')
+
+
+def ripple_at_end(values: Floats) -> float | None:
+    """Return the ripple in the last tenth of the samples; None without samples."""
+    tail = values[-max(2, round(END * len(values))):]
+    return ripple(tail) if len(tail) else None
+
+
+def _settled(signals: Signals, own: ActuatorConfig) -> float | None:
+    position = signals.drawn(f'{own.name}.position')
+    return settling_time(position.t, position.values) if len(position.t) else None
+
+
+def _peak(values: Floats) -> str:
+    return digits(float(np.abs(values).max()), 3) if len(values) else '-'
+
+
+def _error(signals: Signals, own: ActuatorConfig, field: str, scale: float, unit: str) -> str:
+    """Return rms and greatest error of a loop with their unit; '-' if it is off."""
+    error = error_of(signals, own.name, field) if field in active(own.sheet.reu) else None
+    if error is None:
+        return '-'
+    found = tracking_error(error)
+    return f'{digits(found.rms * scale, 3)}, {digits(found.most * scale, 3)} {unit}'

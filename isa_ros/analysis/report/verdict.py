@@ -1,0 +1,68 @@
+"""The verdict of a run in words: its end, trips, warnings, faults, limits, what has settled."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from isa_ros.analysis.report.key_figures import settling_time
+from isa_ros.analysis.report.limits import reached_limits
+from isa_ros.analysis.signals.signals import Signals
+from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
+import numpy as np
+
+GOOD, NOTE, BAD = 'good', 'note', 'bad'
+_MOST = 6       # events of a kind that are told one by one
+_KINDS: Mapping[str, tuple[str, str]] = {
+    TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
+    REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
+"""In the order of the verdict, with their word and whether they are bad."""
+
+
+class Statement(NamedTuple):
+    """One line of the verdict."""
+
+    grade: str
+    """`GOOD`, `NOTE` or `BAD`."""
+    text: str
+
+
+def verdict(signals: Signals, events: Sequence[Event], ending: str) -> list[Statement]:
+    """Return the statements about a run; ``ending`` is why it did not come to its end, or ''."""
+    end = float(signals.time[-1])
+    found = [Statement(BAD, ending) if ending else
+             Statement(GOOD, f'The run came to its end, t = {end:.3f} s.')]
+    if not any(own.kind == TRIP for own in events):
+        found.append(Statement(GOOD, 'Nothing tripped.'))
+    for kind, (word, grade) in _KINDS.items():
+        found += _told(word, grade, [own for own in events if own.kind == kind])
+    if signals.problem:
+        return found
+    limits = reached_limits(signals)
+    found += [Statement(NOTE, f'Limit reached: {own}.') for own in limits]
+    if not limits:
+        found.append(Statement(GOOD, 'No loop, end stop or relief valve reached its limit.'))
+    return [*found, *_motion(signals)]
+
+
+def _told(word: str, grade: str, events: Sequence[Event]) -> Iterator[Statement]:
+    """Yield a statement for each event of a kind; of very many the first ones."""
+    for own in events[:_MOST]:
+        yield Statement(grade, f'{word}: {own.source}, {own.what}, t = {own.t_s:.6f} s.')
+    if len(events) > _MOST:
+        yield Statement(grade, f'{word}: {len(events) - _MOST} more, see the events.')
+
+
+def _motion(signals: Signals) -> Iterator[Statement]:
+    """Yield which actuators stood still, settled, or still move at the end."""
+    words: dict[str, list[str]] = {}
+    for own in signals.run.actuators:
+        t, x = signals.drawn(f'{own.name}.position')
+        if not len(t):
+            continue
+        settled = settling_time(t, x)
+        word = ('Did not move' if np.ptp(x) == 0.0 else
+                'Still moving at the end' if settled is None else 'Settled')
+        words.setdefault(word, []).append(
+            own.name if settled is None else f'{own.name} at t = {settled:.3f} s')
+    for word in sorted(words):
+        yield Statement(NOTE if word.startswith('Still') else GOOD,
+                        f'{word}: {", ".join(words[word])}.')
