@@ -49,7 +49,8 @@ def test_an_executable_can_be_called(name: str, module: str, function: str) -> N
 
 
 @pytest.mark.parametrize('file', [
-    'requirements.txt', 'requirements-test.txt', 'requirements-bench.txt'])
+    'requirements.txt', 'requirements-test.txt', 'requirements-bench.txt',
+    'requirements-docs.txt'])
 def test_requirements_are_pinned(file: str) -> None:
     """The same clone gives the same environment; ROS only there, never in setup.py."""
     lines = [line for line in (ROOT / file).read_text(encoding='utf-8').splitlines()

@@ -69,7 +69,7 @@ def checkout(revision: str) -> Iterator[Path]:
         This is not a checkout, or it has no such revision.
 
     """
-    commit = _git('rev-parse', '--verify', '--end-of-options', f'{revision}^{{commit}}')
+    commit = _git('rev-parse', '--verify', f'{revision}^{{commit}}')
     if commit.returncode:
         known = _git('rev-parse', '--git-dir').returncode == 0
         reason = 'no such revision' if known else f'{ROOT} is not a checkout with git'

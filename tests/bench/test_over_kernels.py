@@ -75,8 +75,10 @@ def test_a_run_without_a_pace_has_the_ticks_of_one_that_is_stepped():
     assert advanced.group.samples.tobytes() == stepped.group.samples.tobytes()
     assert sum(advance.stretches) + len(advance.stretches) == 60
     assert 0.0 < advance.driven_share == len(advance.stretches) / 60 < 1.0
+    first = len(advance.stretches)
     advance()
-    assert advanced.ticks == 120 and advance.driven_share < 1.0
+    assert advanced.ticks == 120
+    assert advance.driven_share == (first + len(advance.stretches)) / 120
 
 
 def test_kernels_alone_are_those_of_the_ticks():
@@ -88,6 +90,37 @@ def test_kernels_alone_are_those_of_the_ticks():
     driving(whole, 30)()
     assert alone.group.samples.tobytes() == whole.group.samples.tobytes()
     assert alone.body_sample.tobytes() == whole.body_sample.tobytes()
+
+
+def test_kernels_alone_begin_where_the_simulation_is():
+    """Also after a reset: then at t = 0, as those of a new one."""
+    again, new = Simulation(leg_drop()), Simulation(leg_drop())
+    driving(again, 50)()
+    again.reset()
+    for simulation in (again, new):
+        kernels_alone(simulation, 30)()
+    assert again.group.samples.tobytes() == new.group.samples.tobytes()
+
+
+def test_parts_of_a_tick_are_those_of_its_two_kinds(monkeypatch):
+    """Kernels of quiet ticks alone; a tick in Python is measured by itself, and counted."""
+    monkeypatch.setattr(over_kernels, 'BEGUN', 5)
+    monkeypatch.setattr(over_kernels, 'TICKS', 40)
+    monkeypatch.setattr(over_kernels, 'DRIVEN', 10)
+    runs = []
+
+    def in_turn(works, per):
+        works['a tick'].run()
+        runs.append(works['a tick'].run.driven_share)
+        return {'a tick': 9.0, 'kernels': 5.0, 'what keeps their rows': 2.0,
+                'ticks in Python': 3.0}
+    monkeypatch.setattr(over_kernels, 'in_turn', in_turn)
+    times = over_kernels._times(leg_drop(), 'in memory')
+    share, = runs
+    assert 0.0 < share < 1.0
+    assert times == {'a tick': 9.0, 'kernels': 5.0, 'what keeps their rows': 2.0,
+                     'kernels of quiet ticks': (1.0 - share) * 5.0,
+                     'ticks in Python': share * 3.0 * 40 / 10}
 
 
 def test_what_is_not_of_kernels_has_no_floor():

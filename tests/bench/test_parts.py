@@ -4,8 +4,9 @@ from isa_ros.bench import plant, tick
 from isa_ros.bench.parts import divided, in_turn, misfits, Work
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import parts_of_median
-from isa_ros.bench.watch import FirstLaps
+from isa_ros.bench.watch import FirstLaps, Watch
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.run.pacing import JOINING, STARTING
 from isa_ros.tick.tick_loop import BEFORE_TICKS
 import pytest
 
@@ -76,6 +77,16 @@ def test_each_work_is_measured_by_its_clock():
     times = in_turn({'still': Work(lambda: None, clock=lambda: 7.0),
                      'moving': Work(lambda: None, clock=lambda: float(next(clock)))}, 6)
     assert times == {'still': 0.0, 'moving': 0.5}
+
+
+def test_a_start_up_is_measured_from_the_start_of_the_process():
+    """Its parts begin later, so that what is between is in none of them."""
+    watch = Watch({'interpreter': 1.5}, 10.0)
+    watch._begun, watch._factor = 12.0, 0.5
+    watch._laps.first = {STARTING: 13.0, JOINING: 14.5, BEFORE_TICKS: 17.0}
+    found = watch.measured(100)
+    assert found.to_tick_0 == 7.0 and found.ticks_per_s == 500.0
+    assert list(found.startup.values()) == [1.5, 1.0, 1.5, 2.5]
 
 
 def test_laps_between_ticks_do_not_count_what_was_before_the_first(monkeypatch):

@@ -1,6 +1,7 @@
 """The page of licences names what the requirements name, as their metadata say."""
 
 from importlib.metadata import metadata
+from importlib.util import find_spec
 from pathlib import Path
 import re
 
@@ -18,14 +19,20 @@ def named(file: str) -> set[str]:
     return set(BY_HAND.findall((ROOT / file).read_text(encoding='utf-8').split('# All that')[0]))
 
 
+BOOK = named('requirements-docs.txt')
+"""Installed where the book is made."""
+
+
 def test_the_packages_are_those_of_the_requirements():
-    assert set(LICENCES) == named('requirements.txt') | named('requirements-test.txt')
+    assert set(LICENCES) == named('requirements.txt') | named('requirements-test.txt') | BOOK
     assert {'numpy', 'python-can', 'pymcap-cli'} <= set(LICENCES)
 
 
 @pytest.mark.parametrize('name', sorted(LICENCES))
 def test_a_licence_is_the_one_of_its_metadata(name):
     """The family: texts say MIT License or BSD, the page has the identifier."""
+    if name in BOOK and find_spec(name.replace('-', '_')) is None:
+        pytest.skip(f'{name} is not installed: requirements-docs.txt')
     own = metadata(name)
     stated = ' '.join([own.get('License-Expression') or '', *(
         text for text in own.get_all('Classifier') or [] if text.startswith('License'))])

@@ -20,6 +20,7 @@ from isa_ros.simulation import Simulation
 from isa_ros.tick.exchange import Rows, RowSink
 from isa_ros.tick.quiet import watch, Watched
 from isa_ros.tick.source import ScheduledSource
+from isa_ros.tick.tick_loop import BEFORE_TICKS
 from isa_ros.tick.trips import TripLog
 import numpy as np
 import pytest
@@ -352,3 +353,18 @@ def test_nothing_is_quiet_while_something_waits():
     assert passed(30) == 0
     simulation.loop.rows.clear_requests()
     assert passed(30) == 16 and passed(30) == 0 and passed(29) == 0
+
+
+def test_laps_of_quiet_ticks_begin_where_the_ticks_before_ended():
+    """What is between them is a lap of its own, also where no tick of Python was before."""
+    phases: list[str] = []
+    loop = load('rig_linear').simulation().loop
+    loop._lap = phases.append
+    loop.begin()
+    while loop.ticks < 3:
+        loop.advance()
+    phases.clear()
+    loop.advance_quietly(30)
+    assert loop.ticks > 3 and phases == [BEFORE_TICKS, 'quiet ticks']
+    loop.advance_quietly(loop.ticks)
+    assert phases == [BEFORE_TICKS, 'quiet ticks']

@@ -1,0 +1,113 @@
+"""
+The blocks of a page, run in the order in which a reader would.
+
+``bash`` blocks are run by a shell in which `./isa` and `python` are those of this environment,
+``python`` blocks share one namespace; one whose first line is a comment with the name of a file is
+written to it, as are ``yaml`` blocks, to NAME.yaml. A ``text`` block is the output of the block
+above it, in which ``...`` stands for anything.
+"""
+
+from collections.abc import Iterator
+import contextlib
+from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
+import io
+import os
+from pathlib import Path
+import re
+import subprocess
+import sys
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[2]
+TIMEOUT_S = 300.0
+_BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+_FILE = re.compile(r'# (\w+\.\w+)\n')
+_NAME = re.compile(r'name: (\w+)\n')
+
+
+class Block(NamedTuple):
+    """A fenced block of a page."""
+
+    kind: str
+    text: str
+    line: int
+    """Of its first line in the page."""
+
+
+def blocks_of(page: str) -> list[Block]:
+    """Return the fenced blocks of a page, in order."""
+    return [Block(found[1], found[2], page[:found.start(2)].count('\n') + 1)
+            for found in _BLOCK.finditer(page)]
+
+
+def run(page: str, folder: Path) -> int:
+    """
+    Run the blocks of a page in an empty folder; return how many were run or written.
+
+    Raises
+    ------
+    AssertionError
+        A block is of no known kind, failed, or printed something else.
+
+    """
+    (folder / 'isa').write_text(f'#!/bin/sh\nexec {sys.executable} -m isa_ros "$@"\n')
+    (folder / 'isa').chmod(0o755)
+    names: dict[str, object] = {}
+    printed: str | None = None
+    count = 0
+    for block in blocks_of(page):
+        if block.kind == 'text':
+            assert printed is not None, f'line {block.line}: an output without a block above it'
+            _compare(block, printed)
+            printed = None
+            continue
+        count += 1
+        printed = _result(block, folder, names)
+    return count
+
+
+def _result(block: Block, folder: Path, names: dict[str, object]) -> str | None:
+    """Return what a block prints; None: it is a file."""
+    own = _FILE.match(block.text) or (_NAME.match(block.text) if block.kind == 'yaml' else None)
+    if own:
+        name = own[1] if '.' in own[1] else f'{own[1]}.yaml'
+        (folder / name).write_text(block.text)
+        return None
+    if block.kind == 'bash':
+        return _of_shell(block, folder)
+    assert block.kind == 'python', f'line {block.line}: a block of {block.kind} cannot be run'
+    with _within(folder), contextlib.redirect_stdout(io.StringIO()) as out:
+        exec(compile(block.text, f'line {block.line} of the page', 'exec'), names)
+    return out.getvalue()
+
+
+def _of_shell(block: Block, folder: Path) -> str:
+    ended = subprocess.run(
+        ['bash', '-euo', 'pipefail', '-c', block.text], cwd=folder, text=True,
+        stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S, env={
+            **os.environ, 'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder / 'log'),
+            'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'})
+    assert ended.returncode == 0, f'line {block.line}: {ended.stdout}{ended.stderr}'
+    return ended.stdout
+
+
+def _compare(block: Block, printed: str) -> None:
+    is_as_shown = OutputChecker().check_output(
+        block.text, printed, ELLIPSIS | NORMALIZE_WHITESPACE)
+    assert is_as_shown, f'line {block.line}: printed was\n{printed}'
+
+
+@contextlib.contextmanager
+def _within(folder: Path) -> Iterator[None]:
+    """Let Python stand in a folder and import its files, and forget them afterwards."""
+    before, known = Path.cwd(), set(sys.modules)
+    os.chdir(folder)
+    sys.path.insert(0, str(folder))
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        os.chdir(before)
+        for name in set(sys.modules) - known:
+            if str(getattr(sys.modules[name], '__file__', None) or '').startswith(str(folder)):
+                del sys.modules[name]

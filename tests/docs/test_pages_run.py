@@ -1,0 +1,52 @@
+"""Every command and code block of these pages can be run as printed, with what it prints."""
+
+from pathlib import Path
+
+import pytest
+from tests.docs.blocks import blocks_of, run
+from tests.ros.domains import held_domain
+
+DOCS = Path(__file__).parents[2] / 'docs'
+PAGES = {'tutorial': 12, 'controller': 10, 'reproduce': 7}
+"""Pages, and how many of their blocks are run or written to a file."""
+
+
+@pytest.mark.slow
+@pytest.mark.ros
+@pytest.mark.parametrize('page', sorted(PAGES))
+def test_a_page_runs_as_printed(
+        page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with held_domain(monkeypatch):
+        count = run((DOCS / f'{page}.md').read_text(encoding='utf-8'), tmp_path)
+    assert count == PAGES[page]
+
+
+def test_an_output_that_is_not_printed_is_noticed(tmp_path: Path) -> None:
+    page = '```python\nprint(6 * 7)\n```\n\n```text\n%s\n```\n'
+    assert run(page % '4...', tmp_path) == 1
+    with pytest.raises(AssertionError, match='^line 6: printed was\n42\n$'):
+        run(page % '43', tmp_path)
+
+
+@pytest.mark.parametrize('page, message', [
+    ('```bash\necho a; false\n```\n', '^line 2: a\n$'),
+    ('```ruby\n1\n```\n', '^line 2: a block of ruby cannot be run$'),
+    ('text\n\n```text\n1\n```\n', '^line 4: an output without a block above it$')])
+def test_what_fails_or_cannot_be_run_is_noticed(page: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(AssertionError, match=message):
+        run(page, tmp_path)
+
+
+def test_files_are_written_and_python_stands_beside_them(tmp_path: Path) -> None:
+    """And forgets them afterwards: another page may have a module of the same name."""
+    page = ('```python\n# own_file.py\nvalue = %d\n```\n```yaml\nname: a_run\n```\n'
+            '```python\nimport own_file\nprint(own_file.value, open("a_run.yaml").read())\n```\n'
+            '```text\n%d name: a_run\n```\n')
+    for value, folder in ((3, tmp_path / 'a'), (5, tmp_path / 'b')):
+        folder.mkdir()
+        assert run(page % (value, value), folder) == 3
+
+
+def test_blocks_have_their_lines() -> None:
+    first, second = blocks_of('a\n```bash\nls\n```\n\n```text\nb\n\nc\n```\n')
+    assert first == ('bash', 'ls\n', 3) and second == ('text', 'b\n\nc\n', 7)
