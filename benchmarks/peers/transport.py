@@ -40,6 +40,7 @@ class PeerTransport:
 
     group = None
     is_quiet = False
+    ends = None
 
     def __init__(
             self, link: Link, run: RunConfig, starts: Records,

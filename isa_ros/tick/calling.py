@@ -32,7 +32,7 @@ class CallingTransport:
         self._names, self._supplies, self._step_ns = list(names), supplies, step_ns
         self._requests: Records = np.zeros(len(names), COMMAND)
         self.group = transport.group
-        self.is_quiet = False
+        self.is_quiet, self.ends = False, None
         self.begin = transport.begin
 
     def join(self, rows: Rows) -> None:

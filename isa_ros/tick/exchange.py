@@ -104,6 +104,37 @@ class Rows:
         self._request_bytes[:] = self._no_requests
 
 
+class Ends(Protocol):
+    """
+    The actuators at the other end of quiet ticks: kernels that carry these out.
+
+    They are run in each tick, in their order.
+    """
+
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the kernels."""
+        ...
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no parameter changed at the last tick, or changes at the next."""
+        ...
+
+    def begin_quiet(self, tick: int) -> None:
+        """Get ready for the tick that begins after ``tick`` ones."""
+        ...
+
+    def end_quiet(self, tick: int, n_ticks: int, place: int) -> bool:
+        """
+        Take note of so many ticks after ``tick`` ones that all parts have carried out.
+
+        ``place`` is that of the part which has ended the tick after them; below 0: none has run.
+        Return whether that tick has begun and `Transport.receive` has to end it.
+        """
+        ...
+
+
 class Transport(Protocol):
     """Connection to the actuators and controllers, in this process or in others."""
 
@@ -115,6 +146,11 @@ class Transport(Protocol):
     @property
     def is_quiet(self) -> bool:
         """Return whether nothing but the actuators has to be looked at in each tick."""
+        ...
+
+    @property
+    def ends(self) -> Ends | None:
+        """Return what carries out quiet ticks; None: nothing does, or not yet."""
         ...
 
     def join(self, rows: Rows) -> None:

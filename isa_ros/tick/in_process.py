@@ -5,9 +5,10 @@ import time
 from typing import Protocol
 
 from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.core.bound import Part
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
-from isa_ros.tick.exchange import IDLE_S, Rows
+from isa_ros.tick.exchange import Ends, IDLE_S, Rows
 
 
 class Input(Protocol):
@@ -23,6 +24,28 @@ class Input(Protocol):
         ...
 
 
+class GroupEnds:
+    """The actuators of a group in quiet ticks."""
+
+    def __init__(self, group: ActuatorGroup) -> None:
+        self._group = group
+        self.parts = (Part(group.tick, group.refuse),)
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no parameter changed at the last tick, or changes at the next."""
+        return self._group.is_settled
+
+    def begin_quiet(self, tick: int) -> None:
+        """Set the clock of the actuators."""
+        self._group.set_clock()
+
+    def end_quiet(self, tick: int, n_ticks: int, place: int) -> bool:
+        """Move the time of the actuators on; a tick that they have begun has passed."""
+        self._group.pass_ticks(n_ticks + (place >= 0))
+        return False
+
+
 class InProcess:
     """
     A `Transport` to the actuators of a group, which advance together.
@@ -34,6 +57,7 @@ class InProcess:
     def __init__(
             self, group: ActuatorGroup, starts: Records, inputs: Sequence[Input] = ()) -> None:
         self.group = group
+        self.ends: Ends | None = GroupEnds(group)
         self._starts = starts
         self._inputs = inputs
 

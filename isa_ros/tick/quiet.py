@@ -5,18 +5,18 @@ Such a tick is kernels alone: ports of supplies and bodies, actuators, bodies an
 what the sinks keep of the rows. They are the kernels that `isa_ros.tick.tick_loop` calls one by
 one, over the same memory, so that the bytes of a run do not depend on how many ticks are in a
 call. A command or a value that changes, a trip, a device that changes its state, a full second:
-these are looked at in Python, and `watch` ends the loop where actuators have caused one.
+these are looked at in Python, and `watch` ends the loop where actuators have caused one. Those of
+other processes are kernels too: their step out and their answers back (`Ends`).
 """
 
 from collections.abc import Sequence
+from enum import Enum
 from typing import NamedTuple
 
-from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.core.bound import Bound, nothing, Part, Program
 from isa_ros.core.device import is_status_due
 from isa_ros.core.kernel import kernel
-from isa_ros.surroundings.surroundings import Surroundings
-from isa_ros.tick.exchange import Rows, RowSink
+from isa_ros.tick.exchange import Ends, Rows, RowSink
 import numpy as np
 
 
@@ -51,48 +51,52 @@ def watch(own):
     return 0
 
 
+class Ended(Enum):
+    """How a call of quiet ticks has ended."""
+
+    FULL = 1
+    """All ticks are finished, and the sinks have them."""
+    SEEN = 2
+    """One more is finished, which the sinks do not have."""
+    BEGUN = 3
+    """One more has begun, and waits for its actuators."""
+
+
 class QuietTicks:
     """
-    The compiled loop over the ``group`` and the ``surroundings`` of a run, with its ``rows``.
+    The compiled loop over the ``ends`` and the surroundings of a run, with its ``rows``.
 
     ``before`` and ``after`` are from `Surroundings.parts` for these rows.
     """
 
     def __init__(
-            self, group: ActuatorGroup, surroundings: Surroundings, rows: Rows, step_ns: int,
-            before: Sequence[Part], after: Sequence[Part]) -> None:
-        self._group, self._surroundings, self._rows = group, surroundings, rows
+            self, ends: Ends, rows: Rows, step_ns: int, before: Sequence[Part],
+            after: Sequence[Part]) -> None:
+        self.ends = ends
+        """The actuators."""
+        self._rows = rows
         self._clock = np.array([0, step_ns], np.int64)
         self._trip_times = np.zeros(len(rows.samples))
-        self._actuators = Part(group.tick, group.refuse)
         watched = Watched(self._clock, rows.samples, rows.applied, rows.sent, self._trip_times)
-        self._tick = (*before, self._actuators, *after, Part(Bound(watch, watched), nothing))
+        self._tick = (*before, *ends.parts, *after, Part(Bound(watch, watched), nothing))
         self._place = len(before)
         self._program = Program(())
 
-    @classmethod
-    def of(cls, group: ActuatorGroup | None, surroundings: Surroundings, rows: Rows,
-           step_ns: int) -> 'QuietTicks | None':
-        """Return the loop of a run; None: a part of its ticks is not a kernel."""
-        if group is None:
-            return None
-        parts = surroundings.parts(rows.ports, rows.feeds, rows.replies, rows.fed)
-        return None if parts is None else cls(group, surroundings, rows, step_ns, *parts)
-
-    def run(self, tick: int, most: int, sinks: Sequence[RowSink]) -> tuple[int, bool]:
+    def run(self, tick: int, most: int, sinks: Sequence[RowSink]) -> tuple[int, Ended]:
         """
         Run up to ``most`` ticks after ``tick`` ones, as far as the sinks need no Python.
 
-        Returns how many sinks have kept, and whether one more is finished, which they have not.
+        Returns how many the sinks have kept.
         """
         for sink in sinks:
             most = min(most, sink.quiet_ticks(tick))
             if not most:
-                return 0, False
+                return 0, Ended.FULL
         self._clock[0] = tick
         self._trip_times[:] = self._rows.samples['trip_time']
         self._rows.take_requests()
-        self._group.set_clock()
+        self._rows.changes = {}
+        self.ends.begin_quiet(tick)
         parts = [*self._tick]
         for sink in sinks:
             most, own = sink.begin_quiet(tick, most, self._clock)
@@ -101,9 +105,10 @@ class QuietTicks:
         if bounds != self._program.parts:
             self._program = Program(bounds)
         done, place, found = self._program.run(most)
-        self._group.pass_ticks(done + (place >= self._place))
+        has_begun = self.ends.end_quiet(tick, done, place - self._place)
         for sink in sinks:
             sink.end_quiet(tick, done)
-        if place >= 0:
-            parts[place].found(found)
-        return done, place >= 0
+        if place < 0:
+            return done, Ended.FULL
+        parts[place].found(found)
+        return done, Ended.BEGUN if has_begun else Ended.SEEN

@@ -16,8 +16,8 @@ from isa_ros.core.signals import Records
 from isa_ros.requests import merge_requests
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
-from isa_ros.tick.exchange import Rows, RowSink, Transport
-from isa_ros.tick.quiet import QuietTicks
+from isa_ros.tick.exchange import Ends, Rows, RowSink, Transport
+from isa_ros.tick.quiet import Ended, QuietTicks
 from isa_ros.tick.source import Source
 
 BEFORE_TICKS = 'between ticks'
@@ -59,7 +59,7 @@ class TickLoop:
         self.stops = stops
         """The emergency stops."""
         self._request_range, self._warn, self._lap = request_range, warn, lap
-        self._quiet = QuietTicks.of(transport.group, surroundings, rows, step_ns)
+        self._quiet = self._quiet_over(transport.ends)
 
     @property
     def t_ns(self) -> int:
@@ -111,6 +111,11 @@ class TickLoop:
         for sink in self.sinks:
             sink.record()
         self._lap('recorder')
+        self._finish_tick()
+
+    def _finish_tick(self) -> None:
+        """End a tick whose step is out."""
+        rows = self.rows
         self.transport.receive(rows)
         if rows.tuned:
             self.source.take_tuned(rows.tuned)
@@ -120,7 +125,7 @@ class TickLoop:
         self._surroundings.advance(rows.replies, rows.fed)
         rows.tuned_supplies = self._surroundings.tuned
         self._lap('body and supplies')
-        self.ticks = tick + 1
+        self.ticks += 1
         for sink in self.sinks:
             sink.take(self.ticks, rows)
         self._lap('messages')
@@ -132,27 +137,41 @@ class TickLoop:
         Possibly by no tick: `advance` then goes on. Raises as `advance`.
         """
         rows, tick = self.rows, self.ticks
-        if self._quiet is None or not self._is_quiet():
-            return
+        quiet = self._quiet_now()
         most = min(until, self.source.quiet_until(tick)) - tick
-        if most < 1:
+        if quiet is None or most < 1:
             return
         self._lap(BEFORE_TICKS)
-        kept, is_seen = self._quiet.run(tick, int(most), self.sinks)
-        self.ticks += kept + is_seen
-        if is_seen:
+        kept, ended = quiet.run(tick, int(most), self.sinks)
+        self.ticks += kept + (ended is Ended.SEEN)
+        if ended is not Ended.FULL:
             for sink in self.sinks:
-                sink.take_time(self.ticks)
-                sink.take(self.ticks, rows)
+                sink.take_time(self.ticks + (ended is Ended.BEGUN))
         self._lap('quiet ticks')
+        if ended is Ended.SEEN:
+            for sink in self.sinks:
+                sink.take(self.ticks, rows)
+        elif ended is Ended.BEGUN:
+            self._finish_tick()
 
-    def _is_quiet(self) -> bool:
-        """Return whether nothing waits to take effect that the compiled loop does not know."""
+    def _quiet_now(self) -> QuietTicks | None:
+        """Return the compiled loop; None: something waits to take effect that it does not know."""
+        rows, transport = self.rows, self.transport
+        if not (transport.is_quiet and self._surroundings.is_settled and not rows.has_requests
+                and (self.stops is None or self.stops.is_quiet(rows.samples))):
+            return None
+        ends = transport.ends
+        if self._quiet is None or self._quiet.ends is not ends:
+            self._quiet = self._quiet_over(ends)
+        return self._quiet if ends is not None and ends.is_settled else None
+
+    def _quiet_over(self, ends: Ends | None) -> QuietTicks | None:
+        """Return the compiled loop; None: a part of its ticks is not a kernel."""
+        if ends is None:
+            return None
         rows = self.rows
-        group = self.transport.group
-        return (group is not None and group.is_settled and self._surroundings.is_settled
-                and self.transport.is_quiet and not rows.has_requests
-                and (self.stops is None or self.stops.is_quiet(rows.samples)))
+        parts = self._surroundings.parts(rows.ports, rows.feeds, rows.replies, rows.fed)
+        return None if parts is None else QuietTicks(ends, rows, self._step_ns, *parts)
 
     def _command(self, given: Records | None) -> None:
         """

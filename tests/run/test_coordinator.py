@@ -34,6 +34,7 @@ class FakeTransport:
 
     group = None
     is_quiet = False
+    ends = None
 
     def __init__(self, log: list[str]) -> None:
         self.log = log

@@ -9,6 +9,7 @@ from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.nodes.lockstep.answer_checks import AnswerChecks, Awaited
 from isa_ros.nodes.lockstep.expected import Limits, Participants
+from isa_ros.nodes.lockstep.hellos import HELLO_PERIOD_S, Hellos
 from isa_ros.nodes.lockstep.socket_rounds import SocketRounds
 from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.nodes.middleware.domain import refuse_other_coordinator
@@ -21,13 +22,12 @@ from isa_ros.run.wire.parts import Parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
     encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
     encode_tick, STEP_TOPIC)
-from isa_ros.tick.exchange import IDLE_S, Rows
+from isa_ros.tick.exchange import Ends, IDLE_S, Rows
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
-HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # longest duration of a tick after a stop was requested
 REPEAT_S = 1.0  # time until an unanswered step is sent again: a message may have been lost
 
@@ -44,7 +44,6 @@ class LockstepTransport:
     """
 
     group = None
-    is_quiet = False
 
     def __init__(
             self, node: Node, participants: Participants, limits: Limits, *,
@@ -54,14 +53,10 @@ class LockstepTransport:
         self._participants = participants.expected
         self._remote = participants.remote
         self._limits = limits
-        self._watch = watch
-        self._should_stop = should_stop
-        self._run_id = 0
-        self._past_runs: set[int] = set()
+        self._watch, self._should_stop = watch, should_stop
+        self._run_id = self._tick = self._requests = 0
         self._answers = AnswerChecks(node, participants)
-        self._tick = 0
         self._begin_due = 0.0
-        self._requests = 0
         self._awaited, self._step = Awaited(0, 0, 'tick 0'), b''
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         self._wires = LocalWires()
@@ -70,6 +65,25 @@ class LockstepTransport:
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
+        self._hellos = Hellos(self._mailbox, self._answers, len(self._remote))
+
+    @property
+    def is_quiet(self) -> bool:
+        """Return whether the topics of the wire need no look yet."""
+        return time.monotonic() < self._next_check
+
+    @property
+    def ends(self) -> Ends | None:
+        """Return what carries out quiet ticks by socket; None: not yet, or with controllers."""
+        return self._rounds.ends(self._run_id, self._end_quiet)
+
+    def _end_quiet(self, tick: int, is_unsent: bool) -> None:
+        """Note the last tick by socket; one that has not reached all is sent on the topic."""
+        self._tick = tick
+        self._send_step(f'tick {tick}', tick, b'')
+        if is_unsent:
+            self._wires.close()
+            self._repeat_step()
 
     def join(self, rows: Rows) -> None:
         """
@@ -92,7 +106,7 @@ class LockstepTransport:
         """
         if self._run_id:
             self._end()
-            self._past_runs.add(self._run_id)
+            self._hellos.past_runs.add(self._run_id)
         self._run_id = secrets.randbits(63) + 1
         self._awaited = self._awaited._replace(run_id=self._run_id)
         self._wires.listen(self._run_id)
@@ -103,7 +117,7 @@ class LockstepTransport:
             count += 1
             self._send(encode_hello(
                 self._run_id, count, self._run.step_ns, self._run.starts, self._run.roster))
-            answers = self._hello_answers(count, is_last=bool(complete))
+            answers = self._hellos.answers(self._run_id, count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
                 self._fill(rows, {k: answer.parts[FIRST:] for k, answer in complete.items()})
@@ -117,24 +131,6 @@ class LockstepTransport:
             if time.monotonic() - start > self._limits.join_s:
                 raise self._answers.none_of(
                     [k for k in sorted(self._remote) if k not in answers], self._limits.join_s)
-
-    def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
-        """Return the answers to the ``count``-th hello; wait the whole period for the last one."""
-        answers: dict[int, Answer] = {}
-        end = time.monotonic() + HELLO_PERIOD_S
-        while is_last or len(answers) < len(self._remote):
-            left = end - time.monotonic()
-            if left <= 0.0:
-                break
-            data = self._mailbox.wait(left)
-            if data is None:
-                continue
-            answer = self._answers.decoded(data, self._run_id)
-            if answer is None or answer.run_id in self._past_runs:
-                continue
-            if self._answers.is_ready(answer, self._run_id) and answer.tick == count:
-                answers[answer.participant] = answer
-        return answers
 
     def _refuse_lost(self, when: str) -> None:
         lost = self._watch()
@@ -184,7 +180,9 @@ class LockstepTransport:
     def receive(self, rows: Rows) -> None:
         """Wait for every participant; see `Transport`."""
         begin = time.monotonic()
-        arrived = self._rounds.receive() if begin < self._next_check else []
+        arrived: list[bytes] | None = self._rounds.left()
+        if not arrived and begin < self._next_check:
+            arrived = self._rounds.receive()
         if arrived is None:
             requested = self._gather(
                 AnswerKind.DONE, [k for k in self._remote if k >= len(rows.replies)])

@@ -14,7 +14,7 @@ class MixedTransport:
         self._actuators = actuators
         self._controllers = controllers
         self.group = actuators.group
-        self.is_quiet = False
+        self.is_quiet, self.ends = False, None
         self.send = controllers.send
 
     def join(self, rows: Rows) -> None:

@@ -1,11 +1,51 @@
 """The coordinator's ticks over sockets, in compiled code as far as nothing is unusual."""
 
+from collections.abc import Callable
+
+from isa_ros.core.bound import nothing, Part
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.nodes.lockstep import sockets
 from isa_ros.nodes.lockstep.expected import Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.tick.exchange import Rows
+
+
+_SEND, _RECEIVE = 0, 1     # places of the parts of `RoundEnds`
+
+
+class RoundEnds:
+    """
+    The actuators of other processes in quiet ticks: a step to all, an answer from each.
+
+    ``end`` is called with the tick that has begun and is not answered, or with the last one that
+    is, and whether its step could not be sent to all.
+    """
+
+    def __init__(self, round_: TickRound, end: Callable[[int, bool], None]) -> None:
+        self._round, self._end = round_, end
+        self.parts = tuple(Part(bound, nothing) for bound in round_.bounds)
+        self.left: list[bytes] = []
+        """Messages that have arrived in a tick that was not answered by all, or not as usual."""
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no parameter changed at the last tick."""
+        return not self._round.rows.tuned
+
+    def begin_quiet(self, tick: int) -> None:
+        """Let a tick be the next one."""
+        self._round.begin(tick)
+
+    def end_quiet(self, tick: int, n_ticks: int, place: int) -> bool:
+        """Note the last tick; return whether it waits for answers."""
+        has_begun = place in (_SEND, _RECEIVE)
+        if place == _RECEIVE:
+            self.left = self._round.received()
+        last = tick + n_ticks - (not (has_begun or place > _RECEIVE))
+        if last >= tick:
+            self._end(last, place == _SEND)
+        return has_begun
 
 
 class SocketRounds:
@@ -23,7 +63,24 @@ class SocketRounds:
             participants.first_remote == 0 < len(participants.starts))
         self._run_id = 0
         self._round: TickRound | None = None
+        self._ends: RoundEnds | None = None
         self._is_sent = False
+
+    def ends(self, run_id: int, end: Callable[[int, bool], None]) -> RoundEnds | None:
+        """Return what carries out quiet ticks, once a round of the run was sent to all."""
+        if self._has_controllers or self._run_id != run_id or not (
+                self._is_sent and self._wires.is_open and self._round is not None):
+            return None
+        if self._ends is None:
+            self._ends = RoundEnds(self._round, end)
+        return self._ends
+
+    def left(self) -> list[bytes]:
+        """Return the messages that quiet ticks have left, once."""
+        if self._ends is None:
+            return []
+        left, self._ends.left = self._ends.left, []
+        return left
 
     def send(self, run_id: int, tick: int, rows: Rows) -> bool:
         """Send the step of a tick; False: not sent, or not to all, and then the wires closed."""
@@ -34,7 +91,7 @@ class SocketRounds:
         if this is None or this.rows is not rows or self._run_id != run_id:
             this = self._round = TickRound(
                 rows, run_id, self._wires.numbers(), self._has_controllers, sockets.LARGEST)
-            self._run_id = run_id
+            self._run_id, self._ends = run_id, None
         if this.is_too_large:
             return False
         self._is_sent = this.send(tick)

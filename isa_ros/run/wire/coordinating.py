@@ -152,8 +152,9 @@ def take_rows(at, k, answer, rows, n):
 
 @kernel
 def take_answers(own):
-    """Fill the rows of the run from the answers that were received; return 0."""
+    """Fill the rows of the run from the answers that were received, the next tick; return 0."""
     this, n = own.this[0], len(own.received)
+    this.tick += 1
     for k in range(n):
         answer, at = own.answers[k], this.first + this.rows
         at = take_rows(at, k, answer, own.replies, n)
@@ -204,12 +205,17 @@ class TickRound:
         self.is_too_large = step.nbytes > largest
         """Whether the step is larger than a message can be."""
         self._numbers = own.this.view(np.int64).data    # faster than a record's fields
-        self._send, self._receive, self._take = (
+        self._send, self._receive, self._take = self.bounds = tuple(
             Bound(kernel, own) for kernel in (send_step, receive_answers, take_answers))
+        """The kernels of a tick, in their order; each tick after `begin` is the next one."""
+
+    def begin(self, tick: int) -> None:
+        """Let a tick be the next one."""
+        self._numbers[_TICK] = tick
 
     def send(self, tick: int) -> bool:
         """Send the step of a tick to all; return whether all sockets have taken it."""
-        self._numbers[_TICK] = tick
+        self.begin(tick)
         return not self._send.run()
 
     def receive(self) -> bool:
