@@ -26,7 +26,7 @@ CHANGE, REFUSED, CAVITY, OVERPRESSURE = 'change', 'refused', 'cavity', 'overpres
 SMALL = 1e-9
 """Cavities below it, m3, are not told of: 1 mm3."""
 PROOF = 1.5
-"""Pressure that a cylinder is tested with, over its rated one (ISO 10100); less is no event."""
+"""Pressure of a cylinder's proof test over its rated one, assumed; less is no event."""
 _DIGITS = 4
 _GAP = 2        # ticks between two values of a waveform: at an extreme two are equal
 _COUNTS = ('unused_setpoints', 'refused_requests')
