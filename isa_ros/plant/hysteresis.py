@@ -10,6 +10,7 @@ Neglected: that a valve at rest creeps, and that a ripple of the oil takes hyste
 """
 
 from dataclasses import dataclass
+import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
@@ -75,6 +76,29 @@ def hysteresis_record(sheet: Hysteretic, rated: float) -> np.record:
 def widest_play(own: np.record) -> float:
     """Return H/2, how far the valve's current is at most from the coil's, A."""
     return float(own.half + own.share * 0.25 * (own.r_1 + own.r_2 + own.r_3 + own.r_4))
+
+
+def passed_by_play(half: float, amplitude: float) -> complex:
+    """Return the describing function of a play for a sine, N_r(A)  (V31); 0 within the play."""
+    if half >= amplitude:
+        return 0j
+    share = 1.0 - 2.0 * half / amplitude
+    across = math.sqrt(1.0 - share * share)
+    return complex(0.5 + (math.asin(share) + share * across) / math.pi,
+                   -across * across / math.pi)
+
+
+def passed_of_sine(sheet: Hysteretic, percent: float) -> complex:
+    """
+    Return what the valve makes of a sine of the current, its first harmonic over it  (V31).
+
+    ``percent`` is the amplitude, of the current at the stop. A play behind another one is one of
+    both half widths, so that those of V24 add up.
+    """
+    reach, half = 0.5 * sheet.hysteresis_from_percent, 0.5 * sheet.threshold_percent
+    share = (sheet.hysteresis_percent - sheet.threshold_percent) / reach
+    behind = [passed_by_play(half + (j + 0.5) / _PLAYS * reach, percent) for j in range(_PLAYS)]
+    return (1.0 - share) * passed_by_play(half, percent) + share * sum(behind) / _PLAYS
 
 
 @kernel

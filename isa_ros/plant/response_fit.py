@@ -3,7 +3,8 @@ A spool that has the frequency response of a data sheet, at a small and at a lar
 
 At the small one a second-order response has both stated points, -90 degrees and -3 dB. At the
 large one the pilot stage's flow ends: the spool goes no faster than at a limited speed, found by
-harmonic balance from the stated point. Neglected: that hysteresis delays small amplitudes more.
+harmonic balance from the stated point. Both are those of the spool alone: hysteresis wears during
+a run, and a spool does not become slower by it. What it adds to the lag is told by `sheet_fit`.
 """
 
 import math
@@ -43,6 +44,21 @@ def damping_of(at_90: float, at_3db: float) -> float:
             f'minus_90_deg_hz = {at_90:g} Hz: a second-order response has no more')
     squared = r * r
     return math.sqrt(0.5 - 0.25 * (squared * squared - 1.0) / squared)
+
+
+def leading(at_90: float, at_3db: float, lag: float) -> float:
+    """
+    Return the frequency (Hz) of -90 degrees of a response behind something that lags  (V31).
+
+    With ``lag`` (rad, below 45 degrees) of the frequency both together have -90 degrees at
+    ``at_90`` Hz; the -3 dB stay. x = w_n^2 solves |H|^2 = 1/2 at the one and
+    2 zeta w_n w tan(lag) = w_n^2 - w^2 at the other.
+    """
+    t, stated, other = math.tan(lag), at_90 * at_90, at_3db * at_3db
+    ratio = other / stated
+    first, half = ratio - t * t, t * t * other + ratio * stated
+    last = t * t * other * other + ratio * stated * stated
+    return math.sqrt((half + math.sqrt(max(0.0, half * half - first * last))) / first)
 
 
 def saturated(share: float) -> float:

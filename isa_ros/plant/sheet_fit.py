@@ -9,10 +9,12 @@ from collections.abc import Callable, Iterator
 import math
 from typing import NamedTuple
 
+from isa_ros.core.elementary import atan2
 from isa_ros.core.units import LPM, MILLI, MPA, PERCENT
+from isa_ros.plant.hysteresis import Hysteretic, passed_of_sine
 from isa_ros.plant.motor import Motor
 from isa_ros.plant.plant import MotorPlant, Plant, plant_record
-from isa_ros.plant.response_fit import magnitude, response_at, SecondOrder
+from isa_ros.plant.response_fit import gain_at, leading, magnitude, response_at, SecondOrder
 from isa_ros.plant.servo_valve import port_flows
 from isa_ros.plant.spool import DataSheetSpool, ResponseSpool
 from isa_ros.plant.stated_curves import SidesFlow
@@ -22,6 +24,7 @@ import numpy as np
 _HALVINGS = 60
 _FINE = 400     # currents at which the largest leakage is looked for
 _GAIN = math.sqrt(0.5)
+_SMALL = 5.0    # % of the current: the small amplitude of data sheets
 
 
 class Fit(NamedTuple):
@@ -41,7 +44,8 @@ def fits(plant: Plant) -> list[Fit]:
         return found
     lands = plant_record(plant)[0].valve
     return [*found, *_flows(plant.valve, lands), *_leakages(plant.valve, lands),
-            _pressure_gain(plant.valve, lands), *_responses(plant.spool)]
+            _pressure_gain(plant.valve, lands), *_responses(plant.spool),
+            *_behind_hysteresis(plant.spool, plant.valve)]
 
 
 def _efficiencies(sheet: Motor) -> Iterator[Fit]:
@@ -143,6 +147,24 @@ def _responses(sheet: object) -> Iterator[Fit]:
             stated = getattr(sheet, f'large_{at}_hz')
             yield Fit(f'spool, {_WORDS[at]} at {sheet.large_percent:g} %', stated or None,
                       frequency_of(own, at, sheet.limit), 'Hz')
+
+
+def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[Fit]:
+    """Yield -90 degrees of spool and hysteresis together, and what makes it the stated one."""
+    if not isinstance(sheet, ResponseSpool) or valve.hysteresis_percent == 0.0:
+        return
+    passed = passed_of_sine(valve, _SMALL)
+    own = SecondOrder(sheet.natural_frequency_rad_per_s, sheet.damping_ratio)
+    lag = -atan2(passed.imag, passed.real)
+    if math.tan(lag) >= sheet.minus_3_db_hz / sheet.minus_90_deg_hz:
+        return
+
+    def is_below(frequency: float) -> bool:
+        return (gain_at(own, frequency, 1.0) * passed).real > 0.0
+    yield Fit(f'spool behind the hysteresis, -90 deg at {_SMALL:g} %', None,
+              _root(is_below, own.w_n), 'Hz')
+    yield Fit(f'minus_90_deg_hz with which that is {sheet.minus_90_deg_hz:g} Hz', None,
+              leading(sheet.minus_90_deg_hz, sheet.minus_3_db_hz, lag), 'Hz')
 
 
 _WORDS = {'minus_90_deg': '-90 deg', 'minus_3_db': '-3 dB'}

@@ -49,11 +49,18 @@ def test_a_thrown_piston_swings_on_chambers_and_hoses_as_one_ode_says():
     assert np.abs(masses(cylinder) / before - 1.0).max() < 1e-12
 
 
-def test_a_wide_hose_that_is_eased_moves_the_piston_by_less_than_0_1_percent():
-    """C42: 1 m of 10 mm, whose oil evens out at 9e4/s, over 6 mm of motion."""
+def test_a_wide_hose_that_is_eased_moves_the_piston_as_one_that_is_not():
+    """
+    C42: 1 m of 10 mm, whose oil evens out at 9e4/s and eased within 25 us, over 6 mm and 20 ms.
+
+    The drop of a steady flow is the same, so what is left is of second order: of a swing of
+    w = 0.5 m/s over 6 mm, (w 25 us)^2 of the 6 mm for each of its 1.7 rad, 4e-8 m; 1.1e-8 found.
+    """
     cylinder = hosed()
     cylinder.own.mechanics.velocity = 0.5
-    assert deviations(cylinder, OneOde(cylinder))[0] < 6e-6
+    found = deviations(cylinder, OneOde(cylinder))
+    assert found[0] < 4e-8
+    assert cylinder.own.mechanics.position > 0.055
 
 
 @pytest.mark.parametrize('x', [-3e-5, 3e-5])

@@ -9,7 +9,7 @@ from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant.hysteresis import (
-    HYSTERESIS, hysteresis_record, Hysteretic, magnetised, remember, widest_play)
+    HYSTERESIS, hysteresis_record, Hysteretic, magnetised, passed_of_sine, remember, widest_play)
 import numpy as np
 import pytest
 from tests.plant.test_plant import Body
@@ -96,6 +96,20 @@ def test_a_minor_loop_closes_and_the_rate_does_not_matter():
     assert out[599] == out[-1]      # both at 60 % after the turn at -20 %
     assert passed(fine, slow)[-1] == out[-1]
     assert own.plays == slow.plays
+
+
+@pytest.mark.parametrize(('amplitude', 'lag'), [
+    (0.2, 0.0), (1.0, 16.53), (5.0, 5.40), (40.0, 2.38)])
+def test_the_first_harmonic_of_a_sine_is_that_of_the_plays(amplitude, lag):
+    """V31 against a cycle of the plays; within the threshold nothing passes."""
+    angles = 2.0 * np.pi * np.arange(-4000, 8000) / 4000    # three cycles, the last one counts
+    out = passed(amplitude * PERCENT * np.sin(angles), valve())[-4000:]
+    found = 2.0j * (out * np.exp(-1j * angles[-4000:])).mean() / (amplitude * PERCENT)
+    expected = passed_of_sine(Hysteretic(
+        hysteresis_percent=3.0, threshold_percent=0.5, hysteresis_from_percent=20.0), amplitude)
+    # sums over corners in steps of 1.6e-3 rad err by their squares
+    assert found == pytest.approx(expected, abs=2.5e-6)
+    assert -np.degrees(np.angle(expected)) == pytest.approx(lag, abs=0.01)
 
 
 def test_both_directions_are_alike():

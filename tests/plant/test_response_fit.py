@@ -5,7 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.errors import ParameterError
 from isa_ros.plant.response_fit import (
-    damping_of, gain_at, passed_at_3db, passed_at_90, response_at, saturated, SecondOrder,
+    damping_of, gain_at, leading, passed_at_3db, passed_at_90, response_at, saturated, SecondOrder,
     speed_limit)
 from isa_ros.plant.spool import limited_acceleration, ResponseSpool, spool_record
 import numpy as np
@@ -124,3 +124,14 @@ def test_of_two_points_at_the_large_amplitude_the_phase_is_taken():
 def test_points_that_contradict_each_other_are_refused_with_both(values, message):
     with pytest.raises(ParameterError, match=message):
         changed(**values)
+
+
+@pytest.mark.parametrize(('at_90', 'at_3db', 'lag'), [
+    (80.0, 70.0, 5.4), (120.0, 150.0, 12.0), (60.0, 20.0, 3.0)])
+def test_a_spool_in_front_of_a_lag_leads_by_it(at_90, at_3db, lag):
+    """-90 degrees with the lag, and the stated -3 dB."""
+    alone = leading(at_90, at_3db, np.radians(lag))
+    own = SecondOrder(2.0 * np.pi * alone, damping_of(alone, at_3db))
+    assert np.degrees(np.angle(gain_at(own, at_90, 1.0))) == pytest.approx(lag - 90.0, abs=1e-9)
+    assert abs(gain_at(own, at_3db, 1.0)) == pytest.approx(np.sqrt(0.5), rel=1e-11, abs=0.0)
+    assert leading(at_90, at_3db, 0.0) == pytest.approx(at_90, rel=1e-11)

@@ -42,6 +42,19 @@ def test_what_follows_is_told_too(plant: LinearPlant) -> None:
     assert slow.stated is None and slow.model < found['spool, -90 deg at 90 %'].model
 
 
+def test_what_hysteresis_adds_to_the_lag_is_told(plant: LinearPlant) -> None:
+    """-90 degrees where docs/servo_valve.md measures them; the other frequency ends it."""
+    found = by_name(fits(plant))
+    behind = 'spool behind the hysteresis, -90 deg at 5 %'
+    assert found[behind].model == pytest.approx(74.2, abs=0.05)
+    entered = found['minus_90_deg_hz with which that is 80 Hz'].model
+    assert entered == pytest.approx(86.67, abs=0.01)
+    faster = replace(plant, spool=replace(plant.spool, minus_90_deg_hz=entered))
+    assert by_name(fits(faster))[behind].model == pytest.approx(80.0, rel=1e-9)
+    without = replace(plant.valve, hysteresis_percent=0.0, threshold_percent=0.0)
+    assert behind not in by_name(fits(replace(plant, valve=without)))
+
+
 def test_both_sides_are_told(plant: LinearPlant) -> None:
     valve = replace(plant.valve, flow=SidesFlow(
         current_ma=(0.0, 40.0), extending_lpm=(0.0, 38.0), retracting_lpm=(0.0, 30.0)))
