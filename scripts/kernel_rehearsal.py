@@ -18,6 +18,7 @@ from isa_ros.core.bound import run_rounds
 from isa_ros.core.kernel import Entry
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.kinds import Kind
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.value_text import UnknownValue
 from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
@@ -25,7 +26,6 @@ from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.answer_loop import AnswerLoop
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.scenario.scenario import load_scenario
-from isa_ros.scripting.log import LogSink
 from isa_ros.tick.source import ScheduledSource
 
 ALONE = 'actuators alone'
@@ -82,10 +82,9 @@ def _run(name: str) -> None:
     run = load_run(shipped(CONFIG)[name])
     for actuator in warmed_up(run)[:1]:
         AnswerLoop(actuator.ticked, actuator.advance, _LARGEST)
-    simulation = isa_ros.load(name).simulation()
-    TickRound(simulation.loop.rows, 1, [], False, _LARGEST)
-    simulation.loop.sinks = [LogSink(simulation, _TICKS)]
-    simulation.loop.advance_quietly(_TICKS)
+    own = isa_ros.load(name)
+    TickRound(own.simulation().loop.rows, 1, [], False, _LARGEST)
+    own.simulate(_TICKS * run.step_ns / NS_PER_SECOND)
     for path in shipped(SCENARIOS).values():
         with suppress(ConfigError):     # it is for actuators of another configuration
             scenario = load_scenario(path, run)
@@ -112,9 +111,13 @@ def _noted() -> Iterator[dict[str, Entry]]:
         note(entry)
         return lambda arguments: entry.kernel.compiled(*arguments)
 
-    with patch.object(kernel, 'address_in_library', address_of), patch.object(
-            kernel, 'call_in_library', call_of):
-        yield found
+    kernel.entry_address.cache_clear()
+    try:
+        with patch.object(kernel, 'address_in_library', address_of), patch.object(
+                kernel, 'call_in_library', call_of):
+            yield found
+    finally:
+        kernel.entry_address.cache_clear()  # of what does nothing
 
 
 def _wanted(entry: Entry) -> Wanted:

@@ -5,8 +5,9 @@ Make the libraries of kernels in isa_ros/kernels, by all cores: starts then take
     python -m scripts.make_kernels --all            for all targets, as the wheel has them
     python -m scripts.make_kernels x86-64 aarch64   for these
 
-A library of another architecture is linked by the cross compiler `aarch64-linux-gnu-gcc`; without
-one it is left out, and a line says so. What libraries do not have is compiled at its first use.
+A library of another architecture is linked by `aarch64-linux-gnu-ld` (in the package
+binutils-aarch64-linux-gnu); without it it is left out, and a line says so. What a library does
+not have is compiled at its first use.
 """
 
 from argparse import ArgumentParser
@@ -22,12 +23,11 @@ from typing import Any, NamedTuple, TextIO
 
 from isa_ros.core.kernel_library import SHIPPED
 from isa_ros.core.objects import library_of, object_of, own_target, Target, TARGETS
-from isa_ros.errors import IsaError
+from isa_ros.errors import ConfigError
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
 
 PERIOD_S = 1.5          # between two lines
 _REHEARSAL = 30         # size of one, in kernels
-_CROSS = {'aarch64': 'aarch64-linux-gnu-gcc'}
 
 
 class Job(NamedTuple):
@@ -40,19 +40,21 @@ class Job(NamedTuple):
 
 
 class Made(NamedTuple):
-    """The objects of one entry, or why there are none."""
+    """The objects of one entry by target, and why a target has none."""
 
     objects: dict[str, bytes]
-    refused: str
+    refused: dict[str, str]
 
 
 def make(wanted: Wanted, targets: Sequence[str]) -> Made:
     """Return the objects of an entry for targets."""
-    try:
-        return Made({name: object_of({wanted.symbol: wanted.entry}, TARGETS[name])
-                     for name in targets}, '')
-    except (IsaError, TypeError) as error:
-        return Made({}, f'{wanted.name}: {error}')
+    made = Made({}, {})
+    for name in targets:
+        try:
+            made.objects[name] = object_of({wanted.symbol: wanted.entry}, TARGETS[name])
+        except ConfigError as error:
+            made.refused[name] = str(error).rpartition(': ')[2]
+    return made
 
 
 class Progress:
@@ -119,7 +121,7 @@ class Making:
             return
         for wanted in result:
             if wanted.symbol not in self.made:
-                self.made[wanted.symbol] = Made({}, 'in work')
+                self.made[wanted.symbol] = Made({}, {})
                 progress.total += 1
                 self._add(Job(wanted.size, make, (wanted, self._targets), wanted.name))
 
@@ -127,14 +129,15 @@ class Making:
 def link(target: Target, made: Sequence[Made], out: Path) -> str:
     """Write the library of a target; return a line about it."""
     is_own = target.triple == own_target().triple
-    compiler = 'cc' if is_own else _CROSS.get(target.name, 'cc')
-    if shutil.which(compiler) is None:
-        return f'{target.name}: left out, there is no {compiler} to link it with'
+    linker = 'cc' if is_own else f'{target.triple.replace("unknown-", "")}-ld'
+    if shutil.which(linker) is None:
+        return f'{target.name}: left out, there is no {linker} to link it with'
     objects = [own.objects[target.name] for own in made if target.name in own.objects]
     aside = out / f'.{target.name}.part'
-    library_of(objects, aside, compiler)
+    library_of(objects, aside, linker)
     path = aside.replace(out / f'{target.name}.so')
-    return f'{path}: {len(objects)} kernels, {path.stat().st_size / 2 ** 20:.1f} MiB'
+    return (f'{path}: {len(objects)} of {len(made)} kernels, '
+            f'{path.stat().st_size / 2 ** 20:.1f} MiB')
 
 
 def main(arguments: Sequence[str], stream: TextIO = sys.stdout) -> int:
@@ -152,9 +155,9 @@ def main(arguments: Sequence[str], stream: TextIO = sys.stdout) -> int:
     making = Making(targets, Progress(stream))
     making.run(len(os.sched_getaffinity(0)))
     given.out.mkdir(parents=True, exist_ok=True)
-    for own in making.made.values():
-        if own.refused:
-            print(f'compiled at its first use: {own.refused}', file=stream)
+    for symbol, own in making.made.items():
+        for name, reason in own.refused.items():
+            print(f'{name}: not {symbol.rpartition("_")[0]}, {reason}', file=stream)
     for name in targets:
         print(link(TARGETS[name], list(making.made.values()), given.out), file=stream)
     return 0

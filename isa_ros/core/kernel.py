@@ -130,11 +130,12 @@ class Entry(NamedTuple):
 
     def address(self) -> int:
         """Return the address of the machine code; it is loaded, or compiled if need be."""
-        return _address(self)
+        return entry_address(self)
 
 
 @cache
-def _address(entry: Entry) -> int:
+def entry_address(entry: Entry) -> int:
+    """Return the address of an entry's machine code; once it is known it stays."""
     found = address_in_library(entry)
     if found:
         return found

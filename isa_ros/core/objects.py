@@ -171,9 +171,14 @@ def _remove_unused(module: Any, machine: Any) -> None:
     passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
 
 
+_LINKED = ('--no-undefined', '-z', 'noexecstack')
+
+
 def library_of(objects: Sequence[bytes], out: Path, compiler: str = 'cc') -> None:
     """
     Write a shared library of objects to ``out``; it depends on no other library.
+
+    ``compiler`` links it; one whose name ends with ``ld`` is a linker itself.
 
     Raises
     ------
@@ -188,10 +193,11 @@ def library_of(objects: Sequence[bytes], out: Path, compiler: str = 'cc') -> Non
         paths = [Path(directory, f'{k}.o') for k in range(len(objects))]
         for path, code in zip(paths, objects):
             path.write_bytes(code)
-        done = subprocess.run(
-            [found, '-shared', '-nostdlib', '-Wl,--no-undefined', '-Wl,-z,noexecstack',
-             f'-Wl,-soname,{out.name}', '-o', str(out), *map(str, paths)],
-            capture_output=True, text=True)
+        options: tuple[str, ...] = (*_LINKED, f'-soname={out.name}')
+        if not found.endswith('ld'):
+            options = ('-nostdlib', f'-Wl,{",".join(options)}')
+        done = subprocess.run([found, '-shared', *options, '-o', str(out), *map(str, paths)],
+                              capture_output=True, text=True)
     if done.returncode:
         first = next(iter(done.stderr.splitlines()), f'exit code {done.returncode}')
         raise ConfigError(f'{out}: {compiler} cannot link it: {first}')

@@ -1,0 +1,66 @@
+"""Kernels in a library give the recorded bytes, in a process that has no compiler."""
+
+import json
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+from tests.golden.message_digests import FILE
+
+ROOT = Path(__file__).parents[2]
+RUNS = ('leg.yaml drop.yaml', 'quadruped.yaml quadruped_stand.yaml',
+        'crane_circuit.yaml crane_circuit.yaml', 'rig_rotary.yaml wheel_sine.yaml',
+        'rig_temperature.yaml temperature.yaml', 'rig_hoses.yaml idle')
+PROGRAM = """
+import json, sys
+from pathlib import Path
+sys.modules['numba'] = sys.modules['llvmlite'] = None
+from isa_ros.core import kernel_library
+kernel_library.SHIPPED = Path(sys.argv[1])
+from tests.golden.message_digests import digests, pairs
+scenarios = pairs()
+print(json.dumps({name: digests(scenarios[name]) for name in sys.argv[2:]}))
+print(*[name for name in sys.modules if name.startswith(('scipy', 'numba.', 'llvmlite.'))])
+"""
+
+
+@pytest.fixture(scope='module')
+def libraries(tmp_path_factory):
+    """Return a directory with the libraries for processors of this kind."""
+    from isa_ros.core.kernel_library import own_targets
+    out = tmp_path_factory.mktemp('kernels')
+    made = subprocess.run(
+        [sys.executable, '-m', 'scripts.make_kernels', *own_targets(), '--out', str(out)],
+        cwd=ROOT, env={**os.environ, 'PYTHONPATH': str(ROOT)}, capture_output=True, text=True,
+        timeout=900.0)
+    assert made.returncode == 0, made.stderr
+    for line in made.stdout.splitlines()[-len(own_targets()):]:
+        assert ' of ' in line and 'left out' not in line
+    return out
+
+
+@pytest.mark.slow
+@pytest.mark.golden
+def test_the_recorded_bytes_without_a_compiler(libraries, tmp_path):
+    """Each library of this machine: that of the oldest processor too."""
+    expected = json.loads(FILE.read_text())
+    for path in libraries.iterdir():
+        only = tmp_path / path.stem
+        only.mkdir()
+        (only / _own_name()).symlink_to(path)
+        done = subprocess.run(
+            [sys.executable, '-W', 'ignore', '-c', PROGRAM, str(only), *RUNS], cwd=ROOT,
+            env={**os.environ, 'PYTHONPATH': str(ROOT), 'NUMBA_CACHE_DIR': str(tmp_path / 'none')},
+            capture_output=True, text=True, timeout=600.0)
+        assert done.returncode == 0, done.stderr
+        found, loaded = done.stdout.splitlines()
+        assert json.loads(found) == {name: expected[name] for name in RUNS}, path.name
+        assert loaded == ''
+
+
+def _own_name() -> str:
+    """Return the name of the library that this machine loads first."""
+    from isa_ros.core.kernel_library import own_targets
+    return f'{own_targets()[0]}.so'
