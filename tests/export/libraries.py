@@ -11,10 +11,10 @@ import numpy as np
 ALIGNED = 16
 
 
-def written(own, directory):
-    """Write the library of an actuator to a directory; return its path."""
+def written(own, directory, target=None):
+    """Write the library of an actuator, for this processor, to a directory; return its path."""
     directory.mkdir(parents=True, exist_ok=True)
-    for name, content in library(own, own_target()).items():
+    for name, content in library(own, target or own_target()).items():
         (directory / name).write_bytes(content)
     return directory / f'lib{own.word}.so'
 

@@ -132,6 +132,19 @@ def test_kernels_of_every_target_need_nothing(own, name):
     assert {'kernel_group_tick', 'kernel_start_actuator'} <= {symbol.name for symbol in found}
 
 
+def test_every_target_of_this_processor_gives_the_same_bytes(own, loaded, tmp_path):
+    others = [target for target in TARGETS.values()
+              if target.triple == own_target().triple and target != own_target()]
+    for target in others:
+        one = Instance(loaded)
+        other = Instance(Loaded(written(own, tmp_path / target.name, target), 'isa_v5'))
+        for k in range(100):
+            given = port(x0=0.05 + 1e-4 * np.sin(0.1 * k)), command(HAS_SETPOINT, position=0.051)
+            assert one.tick(*given) == other.tick(*given) == 0
+        assert one.save().tobytes() == other.save().tobytes()
+    assert others or not own_target().name.startswith('x86-64')
+
+
 def test_an_export_is_the_same_every_time(own, path):
     again = library(exported(choose('isa_v5', {'reu.force.kp': 9.5e-08})), own_target())
     for name, content in again.items():
@@ -422,7 +435,7 @@ def test_altered_states_are_refused_as_in_python(loaded, own):
         actuator.tick(given)
     state = instance.save()
     end = len(state) - 16 - actuator.tuning.nbytes
-    odd = [np.array(value).tobytes() for value in (np.nan, -np.inf, -1, 1, 8, 300, 2**31, 0.5)]
+    odd = [np.array(value).tobytes() for value in (np.nan, -1, 8, 300, 2**31)]
     taken = 0
     for at in range(0, end, 8):
         for text in odd:
