@@ -158,6 +158,12 @@ def compare(options: Namespace) -> bool:
         print(one_line(line))
     if options.json:
         write_tree(comparison.tree(), options.json)
+    if options.report:
+        from isa_ros.analysis.report.beside import write_comparison
+        from isa_ros.analysis.report.report import recorded as read_recorded
+        runs = read_recorded(options.expected), read_recorded(options.actual)
+        for path in write_comparison(comparison, runs, options.report):
+            print(one_line(str(path)))
     return comparison.report.is_equal
 
 

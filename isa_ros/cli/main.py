@@ -128,6 +128,9 @@ def _compare(parser: argparse.ArgumentParser) -> None:
     shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
     shared_arguments.json_file(parser, 'every difference')
+    parser.add_argument(
+        '--report', type=Path, metavar='FILE.html', nargs='?', const=Path('compare.html'),
+        help='also draw both over each other on a page (default: compare.html)')
 
 
 def _tolerance(parser: argparse.ArgumentParser) -> None:

@@ -11,7 +11,9 @@ from isa_ros.replay.compare import compare_bags, recorded_as
 from isa_ros.replay.difference import RunDifference, TopicDifference
 from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
 from isa_ros.replay.tolerances import Tolerances
-from isa_ros.text.table import aligned
+from isa_ros.text.table import aligned, Cells
+
+THINNED = 'recorded with different record options: comparing the samples in both'
 
 
 class Comparison(NamedTuple):
@@ -27,16 +29,28 @@ class Comparison(NamedTuple):
 
     def lines(self, expected: str, actual: str) -> list[str]:
         """Return the text for the user; ``expected`` and ``actual`` are the runs' names."""
-        lines = [f'{self.problem}; comparing the messages only'] if self.problem else (
-            key_lines(self.keys, expected, actual))
+        lines = [self.key_remark, *aligned(self.key_rows(expected, actual))]
         if self.is_thinned:
-            lines.append('recorded with different record options: comparing the samples in both')
-        lines.append(str(self.report))
-        if self.report.topics:
-            lines += aligned([
-                ('topic', 'messages', 'from tick', 'largest deviation', 'tick', expected, actual,
-                 'deviation', 'allowed'), *map(_cells, self.report.topics)])
-        return lines
+            lines.append(THINNED)
+        return [*lines, str(self.report), *aligned(self.topic_rows(expected, actual))]
+
+    @property
+    def key_remark(self) -> str:
+        """Return what is above the differing keys, or why there are none."""
+        if self.problem:
+            return f'{self.problem}; comparing the messages only'
+        return remark_on(self.keys)
+
+    def key_rows(self, expected: str, actual: str) -> list[Cells]:
+        """Return the rows of a table of differing keys, the header first; empty without any."""
+        return rows_of(self.keys, expected, actual)
+
+    def topic_rows(self, expected: str, actual: str) -> list[Cells]:
+        """Return the rows of a table of differing topics, the header first; empty without any."""
+        if not self.report.topics:
+            return []
+        return [('topic', 'messages', 'from tick', 'largest deviation', 'tick', expected, actual,
+                 'deviation', 'allowed'), *map(_cells, self.report.topics)]
 
     def tree(self) -> dict[str, Any]:
         """Return everything for JSON; an absent key is null."""
@@ -51,12 +65,22 @@ class Comparison(NamedTuple):
 def key_lines(
         keys: Sequence[DifferingKey] | None, expected: str, actual: str) -> list[str]:
     """Return the differing keys as text; ``expected`` and ``actual`` are the runs' names."""
+    return [remark_on(keys), *aligned(rows_of(keys, expected, actual))]
+
+
+def remark_on(keys: Sequence[DifferingKey] | None) -> str:
+    """Return what is above the table of differing keys, or why there is none."""
     if keys is None:
-        return ['both without configuration: comparing the messages only']
+        return 'both without configuration: comparing the messages only'
     if not keys:
-        return ['configuration, scenario and versions are equal']
-    return ['configuration, scenario or versions differ:', *aligned(
-        [('key', expected, actual, 'unit'), *(key.cells for key in keys)])]
+        return 'configuration, scenario and versions are equal'
+    return 'configuration, scenario or versions differ:'
+
+
+def rows_of(
+        keys: Sequence[DifferingKey] | None, expected: str, actual: str) -> list[Cells]:
+    """Return the rows of a table of differing keys, the header first; empty without any."""
+    return [('key', expected, actual, 'unit'), *(key.cells for key in keys)] if keys else []
 
 
 def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Comparison:

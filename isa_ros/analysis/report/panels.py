@@ -18,8 +18,6 @@ class Curve(NamedTuple):
     """SI."""
     is_reference: bool = False
     """Drawn dashed."""
-    of_run: int = 0
-    """Of two runs that are compared, 0 or 1."""
 
 
 class Panel(NamedTuple):

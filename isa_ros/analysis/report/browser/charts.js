@@ -110,8 +110,10 @@ class Chart {
   read(u) {
     const left = u.cursor.left;
     const t = left === undefined || left < 0 ? null : u.posToVal(left, 'x');
+    const slack = this.view.least / LEAST_SAMPLES;      // a run may end before another one
     this.curves.forEach((curve, k) => {
-      this.legend[k].textContent = t === null ? '–' : shown(curve.values[curve.own.at(t)]);
+      const is = t !== null && t >= curve.own.t(0) - slack && t <= curve.own.t(curve.own.n - 1) + slack;
+      this.legend[k].textContent = is ? shown(curve.values[curve.own.at(t)]) : '–';
     });
     const first = this.curves[0];
     document.getElementById('cursor').textContent =

@@ -15,7 +15,7 @@ function lane(parent, group) {          // states as bands, events as ticks, abo
   for (const band of group.bands) {
     const title = `${band.source}: ${band.state} from t = ${band.from.toFixed(6)} s`;
     put(`band s-${band.state.replace(/ /g, '-')}`, band.from, band.to, title).textContent =
-      band.state;
+      group.isNamed ? `${band.source}: ${band.state}` : band.state;
   }
   for (const mark of group.marks) {
     const made = put(`mark k-${mark.kind}`, mark.t, mark.t, mark.text);
@@ -43,9 +43,11 @@ function addGroup(parent, group) {
   const fill = () => {
     if (!details.open || details.dataset.filled) return;
     details.dataset.filled = '1';
-    for (const source of new Set(group.bands.map(band => band.source))) {
-      if (group.lanes) lane(details, { bands: group.bands.filter(b => b.source === source),
-                                       marks: group.marks.filter(m => m.source === source) });
+    const sources = group.lanes ? [...new Set(group.bands.map(band => band.source))] : [];
+    for (const source of sources) {
+      lane(details, { isNamed: sources.length > 1,
+                      bands: group.bands.filter(b => b.source === source),
+                      marks: group.marks.filter(m => m.source === source) });
     }
     for (const panel of group.panels) new Chart(details, panel, group.marks, meta.grids, view);
   };

@@ -1,0 +1,165 @@
+"""Verdict, limits, key figures and marks of runs whose signals are known."""
+
+import isa_ros
+from isa_ros.analysis.report.key_figures import (
+    error_of, key_rows, landing_rows, landings, ripple_at_end, tracking_error)
+from isa_ros.analysis.report.limits import reached_limits
+from isa_ros.analysis.report.marks import bands_of, marks_of, MOST
+from isa_ros.analysis.report.verdict import BAD, GOOD, NOTE, verdict
+from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
+from isa_ros.core.signals import SAMPLE
+from isa_ros.run.events import Event, History
+import numpy as np
+import pytest
+
+T = np.arange(101) * 0.01
+RUN = isa_ros.load('rig_linear').configuration
+SHEET = RUN.actuators[0].sheet
+
+
+def signals(problem: str = '', **fields: np.ndarray) -> Signals:
+    """Return signals of the ram, 1 s long."""
+    return Signals(RUN, {f'ram.{name}': Signal(T, values) for name, values in fields.items()}, T,
+                   'here', problem)
+
+
+def texts(found, grade):
+    return [own.text for own in found if own.grade == grade]
+
+
+def test_a_quiet_run_is_good():
+    found = verdict(signals(position=np.full(101, 0.04)), [], '')
+    assert found[0] == (GOOD, 'The run came to its end, t = 1.000 s.')
+    assert texts(found, GOOD)[1:] == [
+        'Nothing tripped.', 'No loop, end stop or relief valve reached its limit.',
+        'Did not move: ram.']
+    assert not texts(found, NOTE) and not texts(found, BAD)
+
+
+def test_an_end_that_was_none_is_bad():
+    found = verdict(signals(), [], 'The run ended by an error: lost.')
+    assert found[0] == (BAD, 'The run ended by an error: lost.')
+
+
+@pytest.mark.parametrize(('kind', 'grade', 'word'), [
+    ('trip', BAD, 'Tripped'), ('warning', NOTE, 'Warned'), ('change', NOTE, 'Fault or change'),
+    ('refused', NOTE, 'Refused'), ('cavity', NOTE, 'Cavitated'),
+    ('overpressure', BAD, 'Overpressure')])
+def test_events_are_told_with_their_time(kind, grade, word):
+    found = verdict(signals(), [Event(0.25, 'ram', kind, 'overload')] * 8, '')
+    own = [text for text in texts(found, grade) if text.startswith(word)]
+    assert own == [f'{word}: ram, overload, t = 0.250000 s.'] * 6 + [
+        f'{word}: 2 more, see the events.']
+    assert ('Nothing tripped.' in texts(found, GOOD)) is (kind != 'trip')
+
+
+def test_what_settles_is_told_apart_from_what_moves():
+    settles = verdict(signals(position=0.05 - 0.01 * np.exp(-T / 0.05)), [], '')
+    assert [text for text in texts(settles, GOOD) if text.startswith('Settled')] == [
+        'Settled: ram at t = 0.200 s.']
+    moves = verdict(signals(position=0.04 + 0.01 * T), [], '')
+    assert texts(moves, NOTE) == ['Still moving at the end: ram.']
+
+
+def test_of_another_version_no_limits_are_told():
+    found = verdict(signals('unknown key', position=np.zeros(101)), [], '')
+    assert [own.text for own in found] == [
+        'The run came to its end, t = 1.000 s.', 'Nothing tripped.']
+
+
+def test_limits_are_those_of_the_sheet():
+    """From 0.2 s on 81 of 101 samples are at the limit; just below it none is."""
+    stroke, late = SHEET.plant.drive.stroke, T >= 0.2 - 1e-9
+    opening = SHEET.plant.relief.opening_pressure_mpa * 1e6
+    limit = SHEET.reu.force.limit
+    reached = {
+        'position': np.where(late, stroke, 0.5 * stroke),
+        'pressure_b': np.where(late, 1.001 * opening, 0.0),
+        'spool_reference': np.where(late, -limit, 0.0)}
+    found = reached_limits(signals(**reached))
+    assert {own.what for own in found} == {
+        'at the end stop where it is extended', 'relief valve of chamber B open',
+        'output of the force loop at its limit'}
+    assert all(own.t_s == pytest.approx(0.2) and own.share == pytest.approx(81 / 101)
+               for own in found)
+    assert str(found[0]).endswith(', first at t = 0.200 s, 80 % of the time')
+    below = {'position': np.full(101, 0.99 * stroke), 'pressure_a': np.full(101, 0.999 * opening),
+             'spool_reference': np.full(101, 0.999 * limit)}
+    assert reached_limits(signals(**below)) == []
+    retracted = reached_limits(signals(position=np.zeros(101)))
+    assert [own.what for own in retracted] == ['at the end stop where it is retracted']
+
+
+def test_an_error_is_that_of_the_samples():
+    """A sine of 3 mm about the reference: rms 3/sqrt(2) over whole periods."""
+    wave = 3e-3 * np.sin(2.0 * np.pi * 2.0 * T[:-1])
+    found = error_of(signals(position=np.append(0.05 + wave, 0.05),
+                             position_reference=np.full(101, 0.05)), 'ram', 'position')
+    error = tracking_error(found)
+    assert error.rms == pytest.approx(3e-3 / np.sqrt(2.0) * np.sqrt(100 / 101))
+    # the sample nearest to the crest, 0.125 s
+    assert error.most == pytest.approx(3e-3 * np.sin(np.pi * 0.48)) and error.t_s in T[[12, 13]]
+    assert error_of(signals(position=wave), 'ram', 'position') is None
+
+
+def test_the_row_of_an_actuator_has_its_figures():
+    row = dict(zip(range(13), key_rows(signals(
+        position=np.where(T < 0.5, 0.04, 0.052), velocity=-0.3 * (T == 0.5),
+        force=np.where(T < 0.9, -1500.0, 700.0 + 10.0 * np.cos(np.pi * np.arange(101))),
+        pressure_a=np.full(101, 5e6), pressure_b=np.full(101, 7.25e6),
+        supply_volume=0.002 * T, force_reference=np.full(101, 700.0)))[1]))
+    assert [row[k] for k in range(8)] == [
+        'ram', '40.0', '52.0', 'mm', '300', '1500', 'N', '5.0 to 7.2']
+    assert row[8] == '-' and row[9] == '2077, 2200 N'   # 2200 sqrt(90 / 101)
+    assert (row[10], row[11], row[12]) == ('0.500', '10', '2.000')
+
+
+def test_what_was_not_recorded_is_a_dash():
+    row = key_rows(signals())[1]
+    assert row[0] == 'ram' and set(row[1:3]) == {'-'} and set(row[7:]) == {'-'}
+
+
+def test_ripple_is_half_of_peak_to_peak_in_the_last_tenth():
+    values = np.concatenate([np.full(90, 9.0), np.tile([1.0, 4.0], 5)])
+    assert ripple_at_end(values) == 1.5
+    assert ripple_at_end(np.zeros(0)) is None
+
+
+def test_a_landing_is_the_first_contact_after_the_air():
+    """A leg: 3, 4 N at 0.3 s give 5 N, its peak; a force of 1 N is no contact."""
+    run = isa_ros.load('leg').configuration
+    force = np.zeros((101, 3))
+    force[10:20, 2] = 1.0
+    force[30:60] = (0.0, 3.0, 4.0)
+    force[40, 2] = 12.0
+    found = Signals(run, {'body.foot_force': Signal(T, force)}, T, 'here')
+    landing, = landings(found)
+    assert (landing.t_s, landing.peak_t_s) == (T[30], T[40])
+    assert landing.peak == pytest.approx(np.sqrt(153.0)) and landing.share == 30 / 101
+    assert landing_rows(found)[1] == ('body.foot_force', '0.300', '12.37', '0.400', '30 %')
+    assert landing_rows(Signals(run, {}, T, 'here')) == []
+    down, = landings(Signals(run, {'body.foot_force': Signal(T, force + 9.0)}, T, 'here'))
+    assert down.t_s is None
+
+
+def test_states_are_bands_up_to_the_next_one():
+    samples = np.zeros((4, 1), SAMPLE)
+    samples['device_state'][:, 0] = (1, 1, 2, 5)
+    samples['state_since'][:, 0] = (0.0, 0.0, 0.0123, 0.05)
+    bands = bands_of(RUN, History([0, 5, 13, 51], samples), 0.2)
+    assert [(own.state, own.begin_s, own.end_s) for own in bands] == [
+        ('disabled', 0.0, 0.0123), ('enabled', 0.0123, 0.05), ('fault', 0.05, 0.2)]
+    assert {own.source for own in bands} == {'ram'}
+
+
+def test_marks_are_those_of_the_group_without_states():
+    events = [Event(0.1, 'ram', 'trip', 'a'), Event(0.2, 'ram', 'state', 'b'),
+              Event(0.3, 'other', 'trip', 'c'), *[Event(0.4, 'ram', 'warning', 'd')] * MOST]
+    marks = marks_of(['ram'], [], events)
+    assert len(marks.events) == MOST and {own.what for own in marks.events} == {'a', 'd'}
+
+
+def test_a_real_run_has_the_same_figures_in_memory():
+    result = isa_ros.load('rig_rotary', 'step').simulate(0.2)
+    row = key_rows(signals_of(result))[1]
+    assert float(row[5]) == pytest.approx(np.abs(result['rotor.force']).max(), rel=5e-3)
