@@ -285,9 +285,33 @@ def test_starts(loaded):
     expected.start(0.02, 500.0, 18e6, 2e5)
     assert instance.save().tobytes()[:-16] == expected.snapshot()
     assert instance.sample.tobytes() == expected.sample.tobytes()
-    assert instance.tick() == 0
-    expected.tick()
+    given = port(x0=0.02, supply_pressure=18e6, return_pressure=2e5)
+    assert instance.tick(given) == 0
+    expected.tick(given)
     assert instance.sample.tobytes() == expected.sample.tobytes()
+
+
+def test_only_a_load_of_its_own_needs_no_port(loaded, tmp_path):
+    instance = Instance(loaded)
+    before = bytes(instance.memory)
+    assert instance.tick() == NO_INSTANCE and bytes(instance.memory) == before
+    own = Loaded(written(exported(choose('rig_linear')), tmp_path), 'isa_ram')
+    ram, other = Instance(own), Instance(own)
+    assert ram.start(0.04, 0.0, 17e6, 3e5) == other.start(0.04, 0.0, 17e6, 3e5) == 0
+    for _ in range(3):
+        assert ram.tick() == other.tick(port(x0=9.0, supply_pressure=17e6,
+                                             return_pressure=3e5)) == 0
+    assert ram.sample['position'] == 0.04 and ram.save().tobytes() == other.save().tobytes()
+
+
+def test_the_configured_start_may_be_beyond_the_stroke(tmp_path):
+    """A body may push so; setpoints and starts of a caller may not be there."""
+    own = exported(choose('isa_v5'))
+    own.start['position'] = 0.1 + 1e-5
+    instance = Instance(Loaded(written(own, tmp_path), 'isa_v5'))
+    assert abs(instance.sample['position'] - (0.1 + 1e-5)) < 1e-6
+    assert instance.start(*own.start[0].item()) == BEYOND_RANGE
+    assert instance.tick(port(x0=0.1)) == 0
 
 
 @pytest.mark.parametrize('given, code', [

@@ -83,11 +83,10 @@ static int check_start(const isa_start_t *start)
 
 ISA_EXPORT int ISA(start)(@NAME@_t *self, const isa_start_t *start)
 {
-  int code;
+  const int code = start ? check_start(start) : ISA_OK;
   if (!self) return ISA_NO_INSTANCE;
-  if (!start) start = &ABOUT.start;
-  code = check_start(start);
   if (code) return code;
+  if (!start) start = &ABOUT.start;
   self->diverged = 0;
   for (size_t k = 0; k < BLOCK_BYTES; k++) self->block[k] = 0;
   for (size_t k = 0; k < COUNT(IMAGE); k++)
@@ -167,7 +166,7 @@ ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_
   static const isa_feed_t held;
   isa_command_t own = command ? *command : none;
   int code;
-  if (!self) return ISA_NO_INSTANCE;
+  if (!self || !(port || HAS_OWN_LOAD)) return ISA_NO_INSTANCE;
   if (self->diverged) return (int)self->diverged;
   if ((port && !are_finite(port, sizeof *port)) || (feed && !are_finite(feed, sizeof *feed)))
     return ISA_NOT_FINITE;

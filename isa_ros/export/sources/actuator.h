@@ -195,10 +195,10 @@ int @NAME@_start(@NAME@_t *self, const isa_start_t *start);
 /*
  * Advance by one tick.
  *
- * port: NULL: that of the last tick, at first of isa_about.start. feed: NULL: the pressure of the
- * supply is held over the tick. command: NULL: none. What is refused leaves all as it was. A number
- * > 0: 1 + the number of the state that is no longer finite; it is returned again until the next
- * start or restore.
+ * port: NULL: the pressures of the last tick, at first of the start; of an actuator with a load of
+ * its own only. feed: NULL: the pressure of the supply is held over the tick. command: NULL: none.
+ * What is refused leaves all as it was. A number > 0: 1 + the number of the state that is no longer
+ * finite; it is returned again until the next start or restore.
  */
 int @NAME@_tick(@NAME@_t *self, const isa_port_t *port, const isa_feed_t *feed,
                 const isa_command_t *command);
