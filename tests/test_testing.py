@@ -16,12 +16,12 @@ from isa_ros.replay.replay import Rerun
 from isa_ros.testing import assert_replays
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
+from tests.docs.pages import example, text_of
 
 pytest_plugins = ['pytester']
 
-README = (Path(__file__).parents[1] / 'README.md').read_text()
-YAML = re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
-EXAMPLE = next(block for block in re.findall(r'```python\n(.*?)```', README, re.DOTALL)
+PAGE = text_of('reproduce')
+EXAMPLE = next(block for block in re.findall(r'```python\n(.*?)```', PAGE, re.DOTALL)
                if 'assert_replays' in block)
 BITWISE = "def test_it(assert_replays):\n    assert_replays('bags/drop')\n"
 TOLERANT = BITWISE.replace("'bags/drop'", "'bags/drop', 'bags/tolerances.yaml'")
@@ -63,19 +63,19 @@ def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
     return data[:-8] + struct.pack('<d', value + 0.05)
 
 
-def example(start: str) -> str:
-    """Return the YAML block of the README that begins with a text."""
-    return next(block for block in YAML if block.startswith(start))
+def of_page(start: str) -> str:
+    """Return the YAML block of the page that begins with a text."""
+    return example('reproduce', start)
 
 
-def test_the_example_of_the_readme_fails_as_the_readme_says(project) -> None:
-    """Each of its two tests for its own reason, with the lines that the README shows."""
-    (project.path / 'my_ram.yaml').write_text(example('name: my_ram'))
-    (project.path / 'my_step.yaml').write_text(example('name: my_step'))
+def test_the_example_of_the_page_fails_as_the_page_says(project) -> None:
+    """Each of its two tests for its own reason, with the lines that the page shows."""
+    (project.path / 'my_ram.yaml').write_text(of_page('name: my_ram'))
+    (project.path / 'my_step.yaml').write_text(of_page('name: my_step'))
     isa_ros.load('my_ram.yaml', 'my_step.yaml').simulate().save('bags/step')
     project.makepyfile(test_my_ram=EXAMPLE.replace("pytest_plugins = ['isa_ros.testing']", ''))
     project.runpytest_inprocess('-q').assert_outcomes(passed=2)
-    shown = re.search(r'^    (key +in the bag .*)\n    (.*)$', README, re.MULTILINE)
+    shown = re.search(r'^    (key +in the bag .*)\n    (.*)$', PAGE, re.MULTILINE)
     before, after = shown[2].split()[1:3]
     text = (project.path / 'my_ram.yaml').read_text()
     (project.path / 'my_ram.yaml').write_text(
@@ -88,13 +88,13 @@ def test_the_example_of_the_readme_fails_as_the_readme_says(project) -> None:
         'FAILED test_my_ram.py::test_my_files_still_give_this_step*'])
 
 
-def test_the_tolerances_of_the_readme_fit_its_example(project) -> None:
-    (project.path / 'tolerances.yaml').write_text(example("'*'"))
+def test_the_tolerances_of_the_page_fit_its_example(project) -> None:
+    (project.path / 'tolerances.yaml').write_text(of_page('# tolerances'))
     bag = isa_ros.load(
-        parse(example('name: my_ram'), 'my_ram.yaml'), duration=0.01).simulate().save('bags/ram')
+        parse(of_page('name: my_ram'), 'my_ram.yaml'), duration=0.01).simulate().save('bags/ram')
     assert_replays(bag, 'tolerances.yaml')
     (project.path / 'tolerances.yaml').write_text(
-        example("'*'").replace('/ram/joint', '/arm/joint'))
+        of_page('# tolerances').replace('/ram/joint', '/arm/joint'))
     with pytest.raises(ConfigError, match='^tolerances.yaml: /arm/joint_states: no such topic'):
         assert_replays(bag, 'tolerances.yaml')
 

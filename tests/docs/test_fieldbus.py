@@ -44,7 +44,7 @@ def test_an_example_is_of_at_most_60_lines(example: ModuleType):
 
 
 def test_the_ethercat_example_waits_for_slaves_that_start(monkeypatch: pytest.MonkeyPatch):
-    """Pasted as the README has it, the master is there before the slaves."""
+    """Pasted as the page has it, the master is there before the slaves."""
     found, waited = [0, -1, 3], list[float]()
     begun = type('Begun', (Exception,), {})
 

@@ -51,7 +51,7 @@ def test_text_and_page_have_it(bag, tmp_path):
 
 
 def test_the_shares_close_to_a_ten_millionth(drop):
-    """E1 to E9: the number of README and docs/equations.md, of every actuator and supply."""
+    """E1 to E9: the number of docs/bag.md and docs/equations.md, of every actuator and supply."""
     for name, account in drop.accounts.items():
         given, shares = (
             (account[PUMP.key] + account[HELD.key], SUPPLY_SHARES) if PUMP.key in account

@@ -61,7 +61,7 @@ def test_extremes_are_those_of_the_signals():
 
 @pytest.mark.parametrize('topic', ['references', 'valve', 'joint_states', 'pressure_a', 'state'])
 def test_what_was_not_recorded_is_left_out(tmp_path, topic):
-    """The rest is drawn; README shows a filter without references."""
+    """The rest is drawn; docs show a filter without references."""
     isa_ros.load('rig_linear', changes={'record': {'leave_out': [f'/*/{topic}']}}).simulate(
         0.01).save(tmp_path / 'bag')
     written = write_report(recorded(tmp_path / 'bag'), tmp_path / 'page.html')
