@@ -2,6 +2,7 @@
 
 from pathlib import Path
 import re
+import shutil
 import subprocess
 
 from isa_ros.core.objects import own_target
@@ -37,6 +38,19 @@ def test_the_first_lines_are_those_of_the_example(path):
                           text=True)
     for line in done.stdout.splitlines()[:4]:
         assert f'    {line}\n' in PAGE
+
+
+def test_the_lines_for_cmake(path, tmp_path):
+    if shutil.which('cmake') is None:
+        pytest.skip('cmake is not installed')
+    lines, = re.findall(r'```cmake\n(.*?)```', PAGE, re.DOTALL)
+    (path.parent / 'CMakeLists.txt').write_text(
+        'cmake_minimum_required(VERSION 3.10)\nproject(my C)\n'
+        f'add_executable(my_program example.c)\n{lines}')
+    for command in (['-S', path.parent, '-B', tmp_path], ['--build', tmp_path]):
+        subprocess.run(['cmake', *command], check=True, capture_output=True)
+    done = subprocess.run([tmp_path / 'my_program'], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith('isa_v5, a isa_v5 of isa_ros ')
 
 
 def test_all_files_are_listed():

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 
+from isa_ros.actuator.integration import state_name, STATE_SIZE
 from isa_ros.core.device import MODES
 from isa_ros.core.elf import symbols
 from isa_ros.core.fields import units_of
@@ -393,7 +394,7 @@ def test_a_divergence_stays_until_the_next_start(loaded):
     instance = Instance(loaded)
     state = instance.save()
     code = instance.tick(port(x0=1e300))
-    assert 0 < code < 79
+    assert 0 < code <= STATE_SIZE
     message = loaded.message(code)
     assert re.fullmatch(r'[a-z_.0-9]+ is not finite: the model has diverged', message)
     t_ns = instance.t_ns
@@ -420,8 +421,9 @@ def test_the_state_that_diverged_is_named(loaded, own):
 def test_codes_have_messages(loaded):
     messages = [loaded.message(code) for code in range(0, -10, -1)]
     assert len(set(messages)) == 10 and messages[0] == 'done'
-    assert loaded.message(-10) == loaded.message(79) == 'unknown code'
-    assert loaded.message(1) != loaded.message(78)
+    assert loaded.message(-10) == loaded.message(STATE_SIZE + 1) == 'unknown code'
+    for k in (0, 1, STATE_SIZE - 1):
+        assert loaded.message(1 + k) == f'{state_name(k)} is not finite: the model has diverged'
 
 
 def test_states_that_are_refused(loaded):
