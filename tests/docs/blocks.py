@@ -2,9 +2,9 @@
 The blocks of a page, run in the order in which a reader would.
 
 ``bash`` blocks are run by a shell in which `./isa` and `python` are those of this environment,
-``python`` blocks share one namespace; one whose first line is a comment with the name of a file is
-written to it, as are ``yaml`` blocks, to NAME.yaml. A ``text`` block is the output of the block
-above it, in which ``...`` stands for anything.
+``python`` blocks share one namespace. A block of any kind whose first line is a comment with the
+name of a file is written to it, and a ``yaml`` block to NAME.yaml. A ``text`` block is the output
+of the block above it, in which ``...`` stands for anything.
 """
 
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[2]
 TIMEOUT_S = 300.0
 _BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-_FILE = re.compile(r'# (\w+\.\w+)\n')
+_FILE = re.compile(r'(?:# |/\* )(\w+\.\w+)(?: \*/)?\n')
 _NAME = re.compile(r'name: (\w+)\n')
 
 

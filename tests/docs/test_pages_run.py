@@ -7,7 +7,8 @@ from tests.docs.blocks import blocks_of, run
 from tests.ros.domains import held_domain
 
 DOCS = Path(__file__).parents[2] / 'docs'
-PAGES = {'tutorial': 12, 'controller': 9, 'reproduce': 8}
+PAGES = {
+    'c_controller': 3, 'controller': 9, 'pump_sizing': 3, 'reproduce': 8, 'tutorial': 12}
 """Pages, and how many of their blocks are run or written to a file."""
 
 
@@ -40,11 +41,13 @@ def test_what_fails_or_cannot_be_run_is_noticed(page: str, message: str, tmp_pat
 def test_files_are_written_and_python_stands_beside_them(tmp_path: Path) -> None:
     """And forgets them afterwards: another page may have a module of the same name."""
     page = ('```python\n# own_file.py\nvalue = %d\n```\n```yaml\nname: a_run\n```\n'
+            '```c\n/* own.c */\nint a;\n```\n'
             '```python\nimport own_file\nprint(own_file.value, open("a_run.yaml").read())\n```\n'
             '```text\n%d name: a_run\n```\n')
     for value, folder in ((3, tmp_path / 'a'), (5, tmp_path / 'b')):
         folder.mkdir()
-        assert run(page % (value, value), folder) == 3
+        assert run(page % (value, value), folder) == 4
+        assert (folder / 'own.c').read_text() == '/* own.c */\nint a;\n'
 
 
 def test_blocks_have_their_lines() -> None:
