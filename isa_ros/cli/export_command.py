@@ -1,9 +1,15 @@
 """The command `isa export`; its modules are imported in it, as in `commands`."""
 
 import argparse
+from collections.abc import Callable, Collection, Mapping
+from typing import NamedTuple, TYPE_CHECKING
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.commands import print_line, simulating
+
+if TYPE_CHECKING:
+    from isa_ros.core.objects import Target
+    from isa_ros.export.chosen import Chosen
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -13,6 +19,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help='a model, or an actuator of a run file: isa_v5, leg.yaml:kfe')
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument('--c', action='store_true', help='a shared library, header and examples')
+    what.add_argument(
+        '--fmu', action='store_true',
+        help='with its supply, a unit of FMI 2.0 and one of FMI 3.0 for co-simulation')
     parser.add_argument(
         '--out', type=shared_arguments.directory_to_write, metavar='DIR', required=True,
         help='new directory, or that of an earlier export')
@@ -35,21 +44,44 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 @simulating
 def export(options: argparse.Namespace) -> bool:
-    """Write an actuator as a library of C."""
+    """Write an actuator as a library of C, or with its supply as units of FMI."""
     from isa_ros.config.text.changes import values_of
     from isa_ros.core.objects import own_target
     from isa_ros.export.chosen import choose
     from isa_ros.export.directory import refuse_foreign, write
-    from isa_ros.export.exported import exported
-    from isa_ros.export.library import compiler_of, library, names_of, processor_of, target_of
+    from isa_ros.export.library import compiler_of, processor_of, target_of
     target = own_target() if options.target is None else target_of(options.target)
     compiler_of(options.compiler, processor_of(target))
-    own = exported(choose(
+    chosen = choose(
         options.actuator, values_of(options.set, '--set'), preset=options.preset,
-        variants=options.variant, load=options.load), name=options.name)
-    refuse_foreign(options.out, names_of(own))
+        variants=options.variant, load=options.load)
+    written = (_units if options.fmu else _library)(chosen, target, options)
+    refuse_foreign(options.out, written.names)
     print_line(f'machine code for {target.name} takes 10 to 20 s')
-    write(options.out, library(own, target, options.compiler))
-    for name in (f'{own.word}.h', f'lib{own.word}.so'):
+    write(options.out, written.files())
+    for name in written.shown:
         print(options.out / name)
     return True
+
+
+class _Written(NamedTuple):
+    """Files of an export by name, and those that are printed."""
+
+    names: Collection[str]
+    shown: Collection[str]
+    files: Callable[[], Mapping[str, bytes]]
+
+
+def _library(chosen: 'Chosen', target: 'Target', options: argparse.Namespace) -> _Written:
+    from isa_ros.export.exported import exported
+    from isa_ros.export.library import library, names_of
+    own = exported(chosen, name=options.name)
+    return _Written(names_of(own), (f'{own.word}.h', f'lib{own.word}.so'),
+                    lambda: library(own, target, options.compiler))
+
+
+def _units(chosen: 'Chosen', target: 'Target', options: argparse.Namespace) -> _Written:
+    from isa_ros.export.fmi.unit import parts_of, units
+    own = parts_of(chosen, options.name)
+    names = own.files
+    return _Written(names, names, lambda: units(own, target, options.compiler))

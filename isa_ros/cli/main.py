@@ -259,7 +259,7 @@ _COMMANDS = {
                'inject every fault of the device into a rig and show its effect'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
     'export': (export_command.arguments, export_command.export,
-               'write an actuator as a library of C for programs without Python'),
+               'write an actuator as a library of C or a unit of FMI, without Python'),
     'draw': (_draw, commands.draw, 'draw the linkages of a body and their levers over the stroke'),
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,

@@ -12,6 +12,7 @@ from isa_ros.config.assembly import bodies_in_form, surroundings_of, timing_of
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
+from isa_ros.export.layout import Layout
 from isa_ros.export.starting import start_actuator, Started
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
@@ -66,6 +67,10 @@ class Exported:
     def kernels(self) -> tuple[Called, ...]:
         """Return all kernels with their memories."""
         return self.starting, self.ticking
+
+    def layout(self) -> Layout:
+        """Return the places of all memory, in one block."""
+        return Layout(one.memory for one in self.kernels)
 
 
 def word_of(actuator: str, given: str | None = None) -> str:

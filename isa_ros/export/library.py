@@ -71,23 +71,39 @@ def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str,
         There is no such C compiler, or it fails, with its first line.
 
     """
-    found = compiler_of(compiler, processor_of(target))
     word = own.word
     files = {name: text.encode() for name, text in texts(own).items()}
     files[f'{word}_kernels.o'] = kernels_of(own, target)
+    name = f'lib{word}.so'
+    files[name] = built(
+        name, files, [*FLAGS, f'-Wl,--version-script={word}.map', f'-Wl,-soname,{name}',
+                      f'{word}.c', f'{word}_kernels.o'], processor_of(target), compiler)
+    return files
+
+
+def built(
+        name: str, files: Mapping[str, bytes], arguments: Sequence[str], processor: str,
+        compiler: str) -> bytes:
+    """
+    Return the library that a C compiler makes of files, which its arguments name.
+
+    Raises
+    ------
+    ConfigError
+        As `compiler_of`; or the compiler fails, with its first error.
+
+    """
+    found = compiler_of(compiler, processor)
     with tempfile.TemporaryDirectory() as directory:
-        for name, content in files.items():
-            Path(directory, name).write_bytes(content)
-        name = f'lib{word}.so'
+        for own, content in files.items():
+            Path(directory, own).write_bytes(content)
         done = subprocess.run(
-            [found, *FLAGS, f'-Wl,--version-script={word}.map', f'-Wl,-soname,{name}', '-o', name,
-             f'{word}.c', f'{word}_kernels.o'], cwd=directory, capture_output=True, text=True)
+            [found, '-o', name, *arguments], cwd=directory, capture_output=True, text=True)
         if done.returncode:
             lines = done.stderr.splitlines() or [f'exit code {done.returncode}']
             first = next((line for line in lines if 'error' in line), lines[0])
             raise ConfigError(f'{name}: {compiler} cannot build it: {first}')
-        files[name] = Path(directory, name).read_bytes()
-    return files
+        return Path(directory, name).read_bytes()
 
 
 def processor_of(target: Target) -> str:

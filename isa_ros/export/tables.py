@@ -27,7 +27,7 @@ _EVERYTHING = Bounds(-math.inf, math.inf, '', '')
 
 def tables(own: Exported) -> str:
     """Return the text of the tables, an include file of the source."""
-    layout = Layout(one.memory for one in own.kernels)
+    layout = own.layout()
     return '\n'.join([
         f'/* Tables of {own.word}: places are bytes from the begin of its memory. */',
         f'#include "{own.word}.h"', '', f'#define ISA(name) {own.word}_##name', '',

@@ -1,6 +1,8 @@
 """`isa export`: what it writes, and what it refuses before that."""
 
 from pathlib import Path
+import re
+import zipfile
 
 from isa_ros.cli.main import main
 from isa_ros.export.library import names_of
@@ -32,6 +34,28 @@ def test_a_library_is_written(tmp_path, capsys):
     assert '{"load.inertia", "20", 20.0, "kg", ' in tables
 
 
+@pytest.mark.slow
+def test_units_are_written(tmp_path, capsys):
+    out = tmp_path / 'made'
+    assert main(['export', 'rig_linear', '--fmu', '--out', str(out), '--name', 'ram',
+                 '--set', 'load.inertia=20', '--set', 'supply.pressure_mpa=18.5']) == 0
+    names = ['ram_fmi2.fmu', 'ram_fmi3.fmu']
+    assert capsys.readouterr().out.splitlines() == [str(out / name) for name in names]
+    assert {path.name for path in out.iterdir()} == {*names, 'isa_export.json'}
+    for name in names:
+        with zipfile.ZipFile(out / name) as unit:
+            text = unit.read('modelDescription.xml').decode()
+            assert any(path.endswith('/ram.so') for path in unit.namelist())
+        assert re.search(r'name="supply.pressure_mpa"[^/]*start="18.5"', text)
+        assert re.search(r'name="load.inertia"[^/]*start="20.0"', text)
+
+
+def test_a_circuit_is_refused_for_a_unit(tmp_path, capsys):
+    line = refused(capsys, 'pump_station:left', '--fmu', '--out', tmp_path / 'out')
+    assert line.startswith('isa: left: its supply station is a circuit, must be constant or ')
+    assert not (tmp_path / 'out').exists()
+
+
 def test_what_is_refused(tmp_path, capsys):
     out = tmp_path / 'out'
     for arguments, line in (
@@ -42,7 +66,8 @@ def test_what_is_refused(tmp_path, capsys):
             (('isa_v5', '--c', '--name', 'A'), "isa: --name 'A', must be "),
             (('isa_v5', '--c', '--load', 'none'), 'isa export: argument --load: invalid choice'),
             (('isa_v5', '--c', '--set', 'load'), "isa: --set 'load', must be KEY=VALUE\n"),
-            (('isa_v5',), 'isa export: one of the arguments --c')):
+            (('isa_v5', '--c', '--fmu'), 'isa export: argument --fmu: not allowed with'),
+            (('isa_v5',), 'isa export: one of the arguments --c --fmu')):
         assert refused(capsys, *arguments, '--out', out).startswith(line)
     assert 'required: --out' in refused(capsys, 'isa_v5', '--c')
     assert not out.exists()

@@ -40,7 +40,7 @@ TYPES = {Type.REAL: 'Real', Type.INTEGER: 'Integer', Type.BOOLEAN: 'Boolean',
          Type.TEXT: 'String', Type.ENUMERATION: 'Enumeration'}
 TYPES_OF_3 = {**TYPES, Type.REAL: 'Float64', Type.INTEGER: 'Int32'}
 _CAUSALITY = {Role.TIME: 'independent', Role.INPUT: 'input', Role.OUTPUT: 'output',
-              Role.START: 'parameter', Role.CONSTANT: 'local'}
+              Role.START: 'parameter', Role.TUNED: 'parameter', Role.CONSTANT: 'local'}
 _BASE: Mapping[str, Mapping[str, float]] = {
     'm': {'m': 1}, 's': {'s': 1}, 'kg': {'kg': 1}, 'A': {'A': 1}, 'K': {'K': 1},
     'rad': {'rad': 1}, 'Hz': {'s': -1}, 'celsius': {'K': 1, 'offset': 273.15},
@@ -110,11 +110,9 @@ def _unit(own: Variable) -> str | None:
 
 
 def _variability(own: Variable) -> str:
-    if own.role is Role.CONSTANT:
-        return 'constant'
-    if own.role is Role.START:
-        return 'fixed'
-    return 'continuous' if own.kind is Type.REAL else 'discrete'
+    of_parameters = {Role.CONSTANT: 'constant', Role.START: 'fixed', Role.TUNED: 'tunable'}
+    return of_parameters.get(own.role) or (
+        'continuous' if own.kind is Type.REAL else 'discrete')
 
 
 def _initial(own: Variable) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """The table of a unit's variables: what it is given, what it shows, its parameters, and time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from isa_ros.config.listing import ListedValue, rows
 from isa_ros.config.runs.supplies import SupplyConfig
@@ -10,6 +10,7 @@ from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.core.units import of_coordinate
 from isa_ros.export.chosen import Chosen, value_of
 from isa_ros.export.fmi.inputs import inputs
+from isa_ros.export.fmi.tuned import Tuned
 from isa_ros.export.fmi.variables import Home, Role, Type, Variable
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
@@ -21,12 +22,24 @@ _WHOLE = ('warnings', 'trips', 'first_trip', 'last_trip', 'unused_setpoints', 'r
 _YES_OR_NO = ('is_stale',)
 
 
-def variables(chosen: Chosen, supply: SupplyConfig, start: np.void) -> list[Variable]:
-    """Return all variables of an actuator's unit with its supply; ``start`` is its `START`."""
+def variables(
+        chosen: Chosen, supply: SupplyConfig, start: np.void, may_change: Sequence[Tuned]
+        ) -> list[Variable]:
+    """
+    Return all variables of the unit of an actuator with its supply.
+
+    ``start`` is its `START` row; ``may_change`` are the parameters that may be set at any time.
+    """
     config = chosen.config
+    given = list(inputs(config, start))
+    changing = {own.name: own for own in may_change}
+    constants = {own.name: own for own in _parameters(chosen, supply)}
+    given += [
+        constants.pop(name)._replace(
+            role=Role.TUNED, home=Home.INPUT, place=len(given) + k, low=own.low, high=own.high)
+        for k, (name, own) in enumerate(changing.items())]
     return [
-        *inputs(config, start), *_outputs(config.sheet.is_rotary),
-        *_placed(_parameters(chosen, supply)),
+        *given, *_outputs(config.sheet.is_rotary), *_placed(constants.values()),
         Variable('time', Type.REAL, Role.TIME, Home.TIME, 0, 'simulated time', 's')]
 
 
@@ -77,7 +90,7 @@ def _constant(row: ListedValue, value: float | str, is_rotary: bool) -> Variable
                     of_coordinate(row.unit, is_rotary), value)
 
 
-def _placed(constants: Iterator[Variable]) -> Iterator[Variable]:
+def _placed(constants: Iterable[Variable]) -> Iterator[Variable]:
     """Yield constants with their places in the tables of numbers and of texts."""
     counts = {Home.NUMBER: 0, Home.TEXT: 0}
     for own in constants:

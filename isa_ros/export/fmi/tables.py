@@ -6,6 +6,7 @@ import re
 from isa_ros.export.exported import Exported
 from isa_ros.export.fmi.inputs import PORT_FIELDS
 from isa_ros.export.fmi.supply import Supplied
+from isa_ros.export.fmi.tuned import Tuned
 from isa_ros.export.fmi.variables import Home, Type, Variable
 from isa_ros.export.layout import ALIGNED
 from isa_ros.export.tables import number, quoted
@@ -13,7 +14,6 @@ from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 
 _NOT_OF_A_WORD = re.compile('[^A-Z0-9]')
-_HOMES = {home: f'HOME_{home.name}' for home in Home}
 
 
 def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: str) -> str:
@@ -22,8 +22,8 @@ def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: st
     layout = supply.layout()
     return '\n'.join([
         f'/* The unit of {own.word}: its variables, and the memory of its supply. */',
-        '#ifndef ISA_TABLES_H', '#define ISA_TABLES_H', '', f'#include "{own.word}.h"', '',
-        f'#define ISA(name) {own.word}_##name', '',
+        '#ifndef ISA_TABLES_H', '#define ISA_TABLES_H', '', f'#include "{own.word}.h"',
+        '#include "types.h"', '', f'#define ISA(name) {own.word}_##name', '',
         *_defined((
             ('TOKEN', quoted(token)), ('STEP_NS', own.step_ns),
             ('LIMITS', int(own.actuator.setpoint_range.limits)),
@@ -38,29 +38,25 @@ def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: st
         '', '/* Places of the inputs. */', 'enum input {',
         *(f'  IN_{_NOT_OF_A_WORD.sub("_", variable.name.upper())} = {variable.place},'
           for variable in inputs),
-        '};', '', *_types(), '', '#endif', ''])
+        '};', '', *_declared(), '', '#endif', ''])
 
 
-def _types() -> Iterator[str]:
-    """Yield the types, and the declarations of the tables."""
-    yield f'enum home {{ {", ".join(_HOMES.values())} }};'
-    yield from (
-        '', '/* A variable: name and unit for messages, the range of what may be set. */',
-        'struct variable {', '  const char *name, *unit;', '  double low, high;',
-        '  int32_t place;', '  unsigned char type, home;', '};', '',
-        '/* A number of a table of a kernel: a place in the block, or the length of an axis. */',
-        'struct word {', '  int64_t value;', '  int is_place;', '};', '',
-        '/* A kernel, and where its table begins among the words. */',
-        'struct call {', '  int64_t (*run)(const int64_t *table);', '  int32_t table;', '};', '',
-        '/* `SUPPLY_SAMPLE`. */', 'typedef struct {')
+def _declared() -> Iterator[str]:
+    """Yield the sample of the supply, and the declarations of the tables."""
+    yield '/* `SUPPLY_SAMPLE`. */'
+    yield 'typedef struct {'
     yield from (f'  double {field.name};' for field in SUPPLY_FIELDS)
     yield from (
         '} supply_sample_t;', '', 'extern const struct variable VARIABLES[];',
         'extern const double NUMBERS[], DEFAULTS[INPUTS];', 'extern const char *const TEXTS[];',
         'extern const struct word WORDS[SUPPLY_WORDS];',
         'extern const uint64_t SUPPLY_IMAGE[SUPPLY_BYTES / 8];',
-        'extern const struct call BEFORE[], AFTER[];',
-        'extern const size_t BEFORE_COUNT, AFTER_COUNT;')
+        'extern const struct call BEFORE[], AFTER[];', 'extern const struct tuned TUNED[];',
+        'extern const size_t BEFORE_COUNT, AFTER_COUNT, TUNED_COUNT;', '',
+        '/* Of the actuator: whether its loops are on, and a current without a jump. */',
+        'extern const int32_t IS_ON, FADE;',
+        'void ISA(put_number)(ISA(t) *self, int32_t place, double value);',
+        'int64_t *ISA(flag)(ISA(t) *self, int32_t place);')
 
 
 def _words(supply: Supplied) -> list[str]:
@@ -70,13 +66,18 @@ def _words(supply: Supplied) -> list[str]:
             for word in layout.table(one.memory)]
 
 
-def source(supply: Supplied, table: Sequence[Variable]) -> str:
+def source(
+        own: Exported, supply: Supplied, table: Sequence[Variable], may_change: Sequence[Tuned]
+        ) -> str:
     """Return the text of the tables."""
+    inputs = {variable.name: variable.place for variable in table if variable.home is Home.INPUT}
     layout = supply.layout()
     called = (*supply.before, *supply.after)
     ends = np.cumsum([0, *(len(list(layout.table(one.memory))) for one in called)])
     calls = [f'{{{one.name}, {at}}}' for one, at in zip(called, ends)]
     split = len(supply.before)
+    status = own.ticked.memory.reu['status']
+    of_actuator = own.layout()
     return '\n'.join([
         '#include "tables.h"', '', '#include <math.h>', '',
         *(f'int64_t {name}(const int64_t *table);'
@@ -91,7 +92,12 @@ def source(supply: Supplied, table: Sequence[Variable]) -> str:
         *_array('struct word WORDS', _words(supply)),
         *_array('uint64_t SUPPLY_IMAGE', (f'0x{word:016x}' for word in layout.image())),
         *_array('struct call BEFORE', calls[:split]), *_array('struct call AFTER', calls[split:]),
-        f'const size_t BEFORE_COUNT = {split}, AFTER_COUNT = {len(calls) - split};', ''])
+        *_array('struct tuned TUNED', [
+            f'{{{inputs[one.name]}, {one.place}}}' for one in may_change] or ['{0, 0}']),
+        f'const size_t BEFORE_COUNT = {split}, AFTER_COUNT = {len(calls) - split};',
+        f'const size_t TUNED_COUNT = {len(may_change)};',
+        f'const int32_t IS_ON = {of_actuator.place(status["is_on"])}, '
+        f'FADE = {of_actuator.place(status["fade"]["begins"])};', ''])
 
 
 def _array(name: str, rows: Iterable[str]) -> Iterator[str]:
@@ -105,8 +111,8 @@ def _variable(own: Variable) -> str:
     low = '-INFINITY' if own.low is None else number(own.low)
     high = 'INFINITY' if own.high is None else number(own.high)
     unit = '' if own.unit == '1' or own.kind is not Type.REAL else own.unit
-    return (f'{{{quoted(own.name)}, {quoted(unit)}, {low}, {high}, {own.place}, {int(own.kind)}, '
-            f'{_HOMES[own.home]}}}')
+    return (f'{{{quoted(own.name)}, {quoted(unit)}, {low}, {high}, {own.place}, '
+            f'TYPE_{own.kind.name}, HOME_{own.home.name}}}')
 
 
 def _defined(values: Iterable[tuple[str, object]]) -> Iterator[str]:

@@ -4,9 +4,6 @@ from collections.abc import Mapping, Sequence
 import hashlib
 from importlib.resources import files
 from io import BytesIO
-from pathlib import Path
-import subprocess
-import tempfile
 from typing import NamedTuple
 import zipfile
 
@@ -14,33 +11,46 @@ from isa_ros.core.kernel import entry_of
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of, Target
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
 from isa_ros.export.exported import Exported, exported
 from isa_ros.export.fmi import tables
 from isa_ros.export.fmi.description import About, description, Version
 from isa_ros.export.fmi.supply import Supplied, supplied
 from isa_ros.export.fmi.table import variables
+from isa_ros.export.fmi.tuned import Tuned, tuned
 from isa_ros.export.fmi.variables import Variable
-from isa_ros.export.library import compiler_of, kernels_of, texts
+from isa_ros.export.header import filled
+from isa_ros.export.library import built, kernels_of, processor_of, texts
 
 PLATFORMS: Mapping[str, Mapping[Version, str]] = {
     'x86_64': {Version.FMI2: 'linux64', Version.FMI3: 'x86_64-linux'},
     'aarch64': {Version.FMI2: 'linux-aarch64', Version.FMI3: 'aarch64-linux'}}
 """Folder of the library by processor and version; the second version has no name for aarch64."""
-SHARED = ('unit.h', 'inside.h', 'unit.c', 'step.c', 'state.c')
+SHARED = ('types.h', 'unit.h', 'inside.h', 'unit.c', 'step.c', 'state.c')
 _FLAGS = ('-std=c11', '-O2', '-fPIC', '-fvisibility=hidden', '-ffp-contract=off', '-shared',
           '-Wl,--no-undefined', '-Wl,-z,noexecstack', '-Wl,--version-script=exports.map')
 _DATE = (1980, 1, 1, 0, 0, 0)    # of all files, so that equal units are equal bytes
 _TOKEN_DIGITS = 32
 
 
-class Made(NamedTuple):
-    """What both versions of a unit are made of."""
+class Parts(NamedTuple):
+    """An actuator, its supply, and the variables of their unit."""
 
     own: Exported
     supply: Supplied
+    may_change: Sequence[Tuned]
     table: Sequence[Variable]
+
+    @property
+    def files(self) -> dict[str, Version]:
+        """Return the versions by the names of their files."""
+        return {f'{self.own.word}_fmi{version.value[0]}.fmu': version for version in Version}
+
+
+class Made(NamedTuple):
+    """What both versions of a unit are made of."""
+
+    parts: Parts
     token: str
     sources: Mapping[str, str]
     """Texts of C by file."""
@@ -49,9 +59,9 @@ class Made(NamedTuple):
     processor: str
 
 
-def made(chosen: Chosen, target: Target, name: str | None = None) -> Made:
+def parts_of(chosen: Chosen, name: str | None = None) -> Parts:
     """
-    Return what the units of an actuator are made of; ``name`` is that of the library.
+    Return the parts of an actuator's unit; ``name`` is that of the library.
 
     Raises
     ------
@@ -60,20 +70,34 @@ def made(chosen: Chosen, target: Target, name: str | None = None) -> Made:
 
     """
     own, supply = exported(chosen, name=name), supplied(chosen)
-    table = variables(chosen, supply.config, own.start[0])
+    may_change = tuned(own)
+    return Parts(own, supply, may_change,
+                 variables(chosen, supply.config, own.start[0], may_change))
+
+
+def units(parts: Parts, target: Target, compiler: str = 'cc') -> dict[str, bytes]:
+    """Return the files of a unit, one a version, by name; raises as `archive`."""
+    own = made(parts, target)
+    return {name: archive(own, version, compiler) for name, version in parts.files.items()}
+
+
+def made(parts: Parts, target: Target) -> Made:
+    """Return what the units are made of for a kind of processor."""
+    own, supply, may_change, table = parts
     objects = kernels_of(own, target), object_of({
         one.name: entry_of(one.function, kind_of(one.memory))
         for one in (*supply.before, *supply.after)}, target)
     of_library = texts(own)
     sources = {
-        **{file: of_library[file] for file in (
-            f'{own.word}.h', f'{own.word}.c', f'{own.word}_tables.h')},
+        f'{own.word}.c': of_library[f'{own.word}.c'] + filled(
+            _source('constants.c'), {'NAME': own.word}),
+        **{file: of_library[file] for file in (f'{own.word}.h', f'{own.word}_tables.h')},
         **{file: _source(file) for file in (*SHARED, *map(_shim, Version))},
-        'tables.c': tables.source(supply, table)}
+        'tables.c': tables.source(own, supply, table, may_change)}
     text = ''.join((*sources.values(), tables.header(own, supply, table, '')))
     token = hashlib.sha256(b''.join((*objects, text.encode()))).hexdigest()[:_TOKEN_DIGITS]
     sources['tables.h'] = tables.header(own, supply, table, token)
-    return Made(own, supply, table, token, sources, objects, target.triple.partition('-')[0])
+    return Made(parts, token, sources, objects, processor_of(target))
 
 
 def _source(name: str) -> str:
@@ -92,18 +116,19 @@ def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
     Raises
     ------
     ConfigError
-        There is no such C compiler, or it fails, with its first line.
+        As `isa_ros.export.library.built`.
 
     """
-    word, config = own.own.word, own.own.chosen.config
-    step = own.own.step_ns / NS_PER_SECOND
+    actuator = own.parts.own
+    word, config, run = actuator.word, actuator.chosen.config, actuator.chosen.run
+    step = actuator.step_ns / NS_PER_SECOND
     about = About(config.name, word, own.token,
-                  f'actuator {config.name} of {own.own.chosen.run.source}, model {config.model}, '
-                  f'with its supply; its tick is {step:g} s', step)
+                  f'actuator {config.name} of {run.source}, model {config.model}, with its '
+                  f'supply; its tick is {step:g} s', step)
     found = BytesIO()
     with zipfile.ZipFile(found, 'w', zipfile.ZIP_DEFLATED) as file:
         for path, content in (
-                ('modelDescription.xml', description(about, own.table, version)),
+                ('modelDescription.xml', description(about, own.parts.table, version)),
                 (f'binaries/{PLATFORMS[own.processor][version]}/{word}.so',
                  library(own, version, compiler))):
             file.writestr(zipfile.ZipInfo(path, _DATE), content, zipfile.ZIP_DEFLATED)
@@ -112,22 +137,11 @@ def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
 
 def library(own: Made, version: Version, compiler: str = 'cc') -> bytes:
     """Return the shared library of a unit; raises as `archive`."""
-    path = compiler_of(compiler, own.processor)
+    objects = {f'kernels_{k}.o': content for k, content in enumerate(own.objects)}
+    exports = f'{{ global: fmi{version.value[0]}*; local: *; }};\n'
+    files = {name: text.encode() for name, text in own.sources.items()} | objects | {
+        'exports.map': exports.encode()}
     others = {_shim(other) for other in Version if other is not version}
-    with tempfile.TemporaryDirectory() as directory:
-        place = Path(directory)
-        for name, text in own.sources.items():
-            (place / name).write_text(text, encoding='utf-8')
-        objects = [f'kernels_{k}.o' for k in range(len(own.objects))]
-        for name, content in zip(objects, own.objects):
-            (place / name).write_bytes(content)
-        (place / 'exports.map').write_text(
-            f'{{ global: fmi{version.value[0]}*; local: *; }};\n', encoding='utf-8')
-        sources = [name for name in own.sources if name.endswith('.c') and name not in others]
-        done = subprocess.run([path, *_FLAGS, '-o', 'library.so', *sources, *objects], cwd=place,
-                              capture_output=True, text=True)
-        if done.returncode:
-            lines = done.stderr.splitlines() or [f'exit code {done.returncode}']
-            first = next((line for line in lines if 'error' in line), lines[0])
-            raise ConfigError(f'{own.own.word}: {compiler} cannot build its library: {first}')
-        return (place / 'library.so').read_bytes()
+    sources = [name for name in own.sources if name.endswith('.c') and name not in others]
+    return built(f'{own.parts.own.word}.so', files, [*_FLAGS, *sources, *objects], own.processor,
+                 compiler)

@@ -6,38 +6,32 @@ a unit of FMI has no other description of them than this table.
 """
 
 from collections.abc import Mapping, Sequence
-from enum import Enum, IntEnum
+from enum import Enum
 from typing import NamedTuple
 
 from isa_ros.core.device import EVENTS, MODES, STATES
 
 
-class Type(IntEnum):
-    """Type of a value; an enumeration is one of `ENUMERATIONS`, a number from 0 on."""
+class Type(Enum):
+    """Type of a value, as types.h of the library names it."""
 
-    REAL = 0
-    INTEGER = 1
-    BOOLEAN = 2
-    ENUMERATION = 3
-    TEXT = 4
+    REAL = 'number'
+    INTEGER = 'whole number'
+    BOOLEAN = 'yes or no'
+    ENUMERATION = 'one of `ENUMERATIONS`, by its number from 0 on'
+    TEXT = 'text'
 
 
-class Home(IntEnum):
-    """Where the library has a value; `Variable.place` counts from its begin."""
+class Home(Enum):
+    """Where the library has a value, likewise; `Variable.place` counts from its begin."""
 
-    TIME = 0
-    INPUT = 1
-    """Of the inputs and of the parameters that may be set before the start."""
-    SAMPLE = 2
-    """`SAMPLE` of the actuator."""
-    REPLY = 3
-    """`LOAD_REPLY`."""
-    SUPPLY = 4
-    """`SUPPLY_SAMPLE`."""
-    NUMBER = 5
-    """Of the constants."""
-    TEXT = 6
-    """Of the texts that are constants."""
+    TIME = 'time'
+    INPUT = 'inputs, and parameters that may be set'
+    SAMPLE = '`SAMPLE` of the actuator'
+    REPLY = '`LOAD_REPLY`'
+    SUPPLY = '`SUPPLY_SAMPLE`'
+    NUMBER = 'constants'
+    TEXT = 'constants that are texts'
 
 
 class Role(Enum):
@@ -48,6 +42,8 @@ class Role(Enum):
     OUTPUT = 'output'
     START = 'start'
     """A parameter that may be set until the start."""
+    TUNED = 'tuned'
+    """A parameter that may be set at any time; it takes effect with the next step."""
     CONSTANT = 'constant'
     """A parameter that was resolved when the unit was made."""
 
@@ -78,4 +74,4 @@ class Variable(NamedTuple):
     @property
     def is_settable(self) -> bool:
         """Return whether its value may be given from outside."""
-        return self.role in (Role.INPUT, Role.START)
+        return self.home is Home.INPUT

@@ -14,7 +14,7 @@ from isa_ros.core.signals import (
 from isa_ros.export.chosen import Chosen
 from isa_ros.export.fmi.description import Version
 from isa_ros.export.fmi.inputs import PORT_FIELDS
-from isa_ros.export.fmi.unit import archive, Made, made
+from isa_ros.export.fmi.unit import archive, Made, made, parts_of
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 
@@ -95,7 +95,7 @@ def case_of(name: str, directory: Path) -> Case:
         ticks.append(Tick(*(own[row].copy() for own in (
             rows.ports, rows.commands, rows.samples, rows.replies)), supplies[at].copy()))
     chosen = Chosen(run.configuration, {}, row, {})
-    own = made(chosen, own_target())
+    own = made(parts_of(chosen), own_target())
     paths = {version: directory / f'unit{version.value[0]}.fmu' for version in Version}
     for version, path in paths.items():
         path.write_bytes(archive(own, version))

@@ -7,16 +7,13 @@ from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
+from tests.export.fmi.runs import OF_SUPPLY, SAMPLED
 
-pytest.importorskip('libcosimpy')
-pytest.importorskip('fmpy')
-from libcosimpy.CosimExecution import CosimExecution  # noqa: E402
-from libcosimpy.CosimManipulator import CosimManipulator  # noqa: E402
-from libcosimpy.CosimObserver import CosimObserver  # noqa: E402
-from libcosimpy.CosimSlave import CosimLocalSlave  # noqa: E402
-
-from fmpy import read_model_description  # noqa: E402
-from tests.export.fmi.runs import OF_SUPPLY, SAMPLED  # noqa: E402
+Execution = pytest.importorskip('libcosimpy.CosimExecution').CosimExecution
+Manipulator = pytest.importorskip('libcosimpy.CosimManipulator').CosimManipulator
+Observer = pytest.importorskip('libcosimpy.CosimObserver').CosimObserver
+Slave = pytest.importorskip('libcosimpy.CosimSlave').CosimLocalSlave
+fmpy = pytest.importorskip('fmpy')
 
 pytestmark = pytest.mark.slow
 STEP_NS = 1_000_000
@@ -31,12 +28,12 @@ def setpoint(k):
 def test_every_output_in_libcosim_is_that_of_the_run(cases):
     case = cases('accumulator')
     path = case.paths[Version.FMI2]
-    variables = {own.name: own for own in read_model_description(str(path)).modelVariables}
+    variables = {own.name: own for own in fmpy.read_model_description(str(path)).modelVariables}
     names = [name for name in (*SAMPLED, *OF_SUPPLY) if variables[name].type == 'Real']
     references = [variables[name].valueReference for name in names]
-    execution = CosimExecution.from_step_size(step_size=STEP_NS)
-    at = execution.add_local_slave(CosimLocalSlave(fmu_path=str(path), instance_name='ram'))
-    observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
+    execution = Execution.from_step_size(step_size=STEP_NS)
+    at = execution.add_local_slave(Slave(fmu_path=str(path), instance_name='ram'))
+    observer, manipulator = Observer.create_last_value(), Manipulator.create_override()
     assert execution.add_observer(observer) and execution.add_manipulator(manipulator)
     inputs = [variables[f'setpoint.{name}'].valueReference
               for name in ('position', 'velocity', 'effort')]

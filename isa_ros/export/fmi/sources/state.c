@@ -69,6 +69,8 @@ static enum status restore(unit_t *unit, const unsigned char *state)
   code = ISA(restore)(unit->actuator, actuator, ISA(state_size)());
   if (code) return unit_say(unit, STATUS_ERROR, ISA(message)(code));
   unit->given = given;
+  for (size_t k = 0; k < TUNED_COUNT; k++)
+    ISA(put_number)(unit->actuator, TUNED[k].place, given.handed[TUNED[k].input]);
   unit_begin_supply(unit);
   for (size_t k = 0; k < PARTS; k++) {
     memcpy(unit->supply + SUPPLY_STATE[k].place, supply, (size_t)SUPPLY_STATE[k].bytes);

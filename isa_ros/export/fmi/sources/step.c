@@ -61,6 +61,18 @@ static isa_command_t take_command(unit_t *unit)
   return command;
 }
 
+/* Put parameters that have changed in force; the valve current of loops that are on goes on. */
+static void take_parameters(unit_t *unit)
+{
+  int has_any = 0;
+  for (size_t k = 0; k < TUNED_COUNT; k++) {
+    if (!has_changed(&unit->given, TUNED[k].input)) continue;
+    ISA(put_number)(unit->actuator, TUNED[k].place, unit->given.inputs[TUNED[k].input]);
+    has_any = 1;
+  }
+  if (has_any && *ISA(flag)(unit->actuator, IS_ON)) *ISA(flag)(unit->actuator, FADE) = 1;
+}
+
 /* Fill the port as the load is `after` s behind the begin of the step. */
 static void fill_port(unit_t *unit, double after)
 {
@@ -101,6 +113,7 @@ static enum status first_tick(unit_t *unit, int *code)
 {
   const isa_command_t command = take_command(unit);
   char message[UNIT_MESSAGE_BYTES];
+  take_parameters(unit);
   fill_port(unit, 0.0);
   *code = tick(unit, command.kinds ? &command : NULL);
   if (*code >= 0) return STATUS_OK;

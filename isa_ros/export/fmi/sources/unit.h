@@ -7,8 +7,7 @@
 #ifndef ISA_UNIT_H
 #define ISA_UNIT_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "types.h"
 
 #if defined _WIN32
 #define EXPORT __declspec(dllexport)
@@ -18,8 +17,6 @@
 
 /* As both versions number them. */
 enum status { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR };
-
-enum type { TYPE_REAL, TYPE_INTEGER, TYPE_BOOLEAN, TYPE_ENUMERATION, TYPE_TEXT };
 
 typedef struct unit unit_t;
 
