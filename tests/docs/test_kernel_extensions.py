@@ -245,10 +245,12 @@ def _load(copied: PatchedCopy) -> None:
 
 def _part(copied: PatchedCopy) -> None:
     copied.add('isa_ros/plant/buffer.py', _BUFFER)
-    plant = 'isa_ros/plant/plant.py'
-    copied.replace(plant, 'from isa_ros.plant.cavitation import',
-                   'from isa_ros.plant.buffer import (\n'
-                   '    Buffer, BUFFER, buffer_force, buffer_record)\n'
+    plant, rates = 'isa_ros/plant/plant.py', 'isa_ros/plant/rates.py'
+    copied.replace(plant, 'from isa_ros.plant.counterbalance import',
+                   'from isa_ros.plant.buffer import Buffer, BUFFER, buffer_record\n'
+                   'from isa_ros.plant.counterbalance import')
+    copied.replace(rates, 'from isa_ros.plant.cavitation import',
+                   'from isa_ros.plant.buffer import buffer_force\n'
                    'from isa_ros.plant.cavitation import')
     copied.replace(plant, "    ('thermal', thermal.THERMAL),\n",
                    "    ('thermal', thermal.THERMAL),\n    ('buffer', BUFFER),\n")
@@ -259,7 +261,7 @@ def _part(copied: PatchedCopy) -> None:
                    '        buffer=buffer_record(sheet.buffer),\n'
                    '        thermal=thermal.thermal_record(')
     force = 'f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)\n'
-    copied.replace(plant, force, f'{force}    f_stop += buffer_force('
+    copied.replace(rates, force, f'{force}    f_stop += buffer_force('
                    's, v, plant.chambers.stroke, plant.buffer)\n')
 
 
