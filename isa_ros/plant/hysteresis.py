@@ -9,11 +9,11 @@ those of the current at the spool's stop, one side, as data sheets have them.
 Neglected: that a valve at rest creeps, and that a ripple of the oil takes hysteresis away.
 """
 
-from dataclasses import dataclass
 import math
+from typing import Any, Protocol
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import parameter
 from isa_ros.core.record import record
 from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
@@ -22,33 +22,66 @@ import numpy as np
 _PLAYS = 4      # of the magnetic part: at 5 % of the current 3 make 2 % more of a loop, 8 none
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hysteretic(Parameters):
-    """Hysteresis of a valve, in percent of the current at the spool's stop."""
+class Hysteretic(Protocol):
+    """Sheet of a valve with hysteresis, in percent of the current at the spool's stop."""
 
-    hysteresis_percent: float = parameter(
+    @property
+    def hysteresis_percent(self) -> float:
+        """Return H."""
+        ...
+
+    @property
+    def threshold_percent(self) -> float:
+        """Return T."""
+        ...
+
+    @property
+    def hysteresis_from_percent(self) -> float:
+        """Return 2 R, from which amplitude on a loop is as wide as H."""
+        ...
+
+
+def widest() -> Any:
+    """Declare H of V24."""
+    return parameter(
         'widest difference of two currents for one opening, over a slow cycle of the whole '
         'current', '%', absent=0.0, source='assumed, neglected', changeable=True, ge=0.0, le=20.0)
-    threshold_percent: float = parameter(
+
+
+def threshold() -> Any:
+    """Declare T of V24."""
+    return parameter(
         'change of the current after a reversal until the spool moves back', '%', absent=0.0,
         source='assumed, neglected', changeable=True, ge=0.0, le=20.0)
-    hysteresis_from_percent: float = parameter(
+
+
+def widest_from() -> Any:
+    """Declare 2 R of V24."""
+    return parameter(
         'amplitude from which a loop is as wide as stated', '%', absent=20.0,
         source='derived from a public bench record: at 20 % as wide as at 100 %', ge=1.0, le=200.0)
 
-    def __post_init__(self) -> None:
-        """Refuse a hysteresis below the threshold, and one that its amplitude cannot have."""
-        super().__post_init__()
-        widest, threshold = self.hysteresis_percent, self.threshold_percent
-        if widest < threshold:
-            raise ParameterError(
-                f'hysteresis_percent = {widest:g} %, must be >= threshold_percent = '
-                f'{threshold:g} %: the threshold is part of it')
-        most = threshold + 0.5 * self.hysteresis_from_percent
-        if widest > most:
-            raise ParameterError(
-                f'hysteresis_percent = {widest:g} %, must be <= {most:g} %, threshold_percent and '
-                f'half of hysteresis_from_percent = {self.hysteresis_from_percent:g} %')
+
+def refuse_hysteresis(sheet: Hysteretic) -> None:
+    """
+    Refuse a hysteresis below the threshold, and one that its amplitude cannot have.
+
+    Raises
+    ------
+    ParameterError
+        With both numbers.
+
+    """
+    most, least = sheet.hysteresis_percent, sheet.threshold_percent
+    if most < least:
+        raise ParameterError(
+            f'hysteresis_percent = {most:g} %, must be >= threshold_percent = '
+            f'{least:g} %: the threshold is part of it')
+    bound = least + 0.5 * sheet.hysteresis_from_percent
+    if most > bound:
+        raise ParameterError(
+            f'hysteresis_percent = {most:g} %, must be <= {bound:g} %, threshold_percent and '
+            f'half of hysteresis_from_percent = {sheet.hysteresis_from_percent:g} %')
 
 
 PLAYS = np.dtype([
@@ -65,12 +98,12 @@ HYSTERESIS = np.dtype([
 
 def hysteresis_record(sheet: Hysteretic, rated: float) -> np.record:
     """Return the `HYSTERESIS` record of a valve with the ``rated`` current (A) at its stop."""
-    widest, threshold = sheet.hysteresis_percent, sheet.threshold_percent
+    most, least = sheet.hysteresis_percent, sheet.threshold_percent
     reach = 0.5 * sheet.hysteresis_from_percent     # R of V24, in percent
     halves = {f'r_{j + 1}': (j + 0.5) / _PLAYS * reach * PERCENT * rated for j in range(_PLAYS)}
     return record(
-        HYSTERESIS, is_on=float(widest > 0.0), half=0.5 * threshold * PERCENT * rated,
-        share=(widest - threshold) / reach, plays=np.zeros(1, PLAYS)[0], **halves)
+        HYSTERESIS, is_on=float(most > 0.0), half=0.5 * least * PERCENT * rated,
+        share=(most - least) / reach, plays=np.zeros(1, PLAYS)[0], **halves)
 
 
 def widest_play(own: np.record) -> float:

@@ -10,7 +10,7 @@ import math
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
-from isa_ros.plant.hysteresis import Hysteretic
+from isa_ros.plant.hysteresis import refuse_hysteresis, threshold, widest, widest_from
 from isa_ros.plant.pressure_gain import PressureGain, refuse_contradiction
 from isa_ros.plant.stated_curves import (
     interpolated, NullShift, PointsFlow, SidesFlow, StatedLeakage, StraightFlow)
@@ -27,9 +27,12 @@ class Lap(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Valve(Hysteretic):
+class Valve(Parameters):
     """Parameters of every valve; currents on the series scale of figure 5."""
 
+    hysteresis_percent: float = widest()
+    threshold_percent: float = threshold()
+    hysteresis_from_percent: float = widest_from()
     spool_gain_mm_per_ma: float = parameter(
         'spool travel per series current, K_spool (eq 9)', 'mm/mA', gt=0.0, le=1.0)
     spool_stop_mm: float = parameter('largest spool travel', 'mm', gt=0.0, le=1.0)
@@ -49,6 +52,11 @@ class Valve(Hysteretic):
         "areas of the lands' slots: matched to the areas of the piston, or all equal",
         'matched', 'equal')
     lap: Lap
+
+    def __post_init__(self) -> None:
+        """Refuse a hysteresis that no valve has."""
+        super().__post_init__()
+        refuse_hysteresis(self)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,9 +94,12 @@ class HighResponseValve(Valve):
 
 
 @dataclass(frozen=True, kw_only=True)
-class DataSheetValve(Hysteretic):
+class DataSheetValve(Parameters):
     """Servo or proportional valve as its data sheet has it: flow and leakage over current."""
 
+    hysteresis_percent: float = widest()
+    threshold_percent: float = threshold()
+    hysteresis_from_percent: float = widest_from()
     rated_drop_mpa: float = parameter(
         'pressure drop over both lands at the stated flows', 'MPa', gt=0.0, le=70.0)
     spool_travel_mm: float = parameter(
@@ -113,6 +124,7 @@ class DataSheetValve(Hysteretic):
     def __post_init__(self) -> None:
         """Refuse a dead band or a pressure gain that contradicts flow or leakage."""
         super().__post_init__()
+        refuse_hysteresis(self)
         if self.dead_band_percent > 0.0:
             self._refuse_dead_band()
         if self.pressure_gain.percent > 0.0:

@@ -9,7 +9,8 @@ from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant.hysteresis import (
-    HYSTERESIS, hysteresis_record, Hysteretic, magnetised, passed_of_sine, remember, widest_play)
+    HYSTERESIS, hysteresis_record, magnetised, passed_of_sine, remember, widest_play)
+from isa_ros.plant.valve_sheets import DataSheetValve, Valve
 import numpy as np
 import pytest
 from tests.plant.test_plant import Body
@@ -19,11 +20,17 @@ RATED = 0.010   # A
 PERCENT = 0.01 * RATED
 
 
-def valve(hysteresis: float = 3.0, threshold: float = 0.5, reach: float = 20.0) -> np.record:
-    """Return the `HYSTERESIS` record of a valve of 10 mA."""
-    return hysteresis_record(Hysteretic(
-        hysteresis_percent=hysteresis, threshold_percent=threshold,
-        hysteresis_from_percent=reach), RATED)
+def sheet(hysteresis: float = 3.0, threshold: float = 0.5, reach: float = 20.0,
+          model: str = 'isa_v5') -> Valve | DataSheetValve:
+    """Return the sheet of a model's valve with hysteresis."""
+    return replace(
+        actuator_sheet(model).plant.valve, hysteresis_percent=hysteresis,
+        threshold_percent=threshold, hysteresis_from_percent=reach)
+
+
+def valve(*values: float) -> np.record:
+    """Return the `HYSTERESIS` record of a `sheet` for 10 mA."""
+    return hysteresis_record(sheet(*values), RATED)
 
 
 def passed(currents: np.ndarray, own: np.record) -> np.ndarray:
@@ -105,8 +112,7 @@ def test_the_first_harmonic_of_a_sine_is_that_of_the_plays(amplitude, lag):
     angles = 2.0 * np.pi * np.arange(-4000, 8000) / 4000    # three cycles, the last one counts
     out = passed(amplitude * PERCENT * np.sin(angles), valve())[-4000:]
     found = 2.0j * (out * np.exp(-1j * angles[-4000:])).mean() / (amplitude * PERCENT)
-    expected = passed_of_sine(Hysteretic(
-        hysteresis_percent=3.0, threshold_percent=0.5, hysteresis_from_percent=20.0), amplitude)
+    expected = passed_of_sine(sheet(), amplitude)
     # sums over corners in steps of 1.6e-3 rad err by their squares
     assert found == pytest.approx(expected, abs=2.5e-6)
     assert -np.degrees(np.angle(expected)) == pytest.approx(lag, abs=0.01)
@@ -146,9 +152,10 @@ def test_compiled_plays_equal_their_python_source(current):
     ((21.0, 20.0, 20.0), 'hysteresis_percent = 21 %, must be <= 20 %'),
     ((3.0, -0.1, 20.0), 'threshold_percent = -0.1 %, must be >= 0 %'),
     ((3.0, 0.5, 0.5), 'hysteresis_from_percent = 0.5 %, must be >= 1 %')])
-def test_values_that_no_valve_has_are_refused(values, message):
+@pytest.mark.parametrize('model', ['isa_v5', 'smart_manifold', 'cylinder'])
+def test_values_that_no_valve_has_are_refused(values, message, model):
     with pytest.raises(ParameterError, match=message):
-        valve(*values)
+        sheet(*values, model=model)
 
 
 def test_the_hysteresis_of_a_pilot_is_refused():
