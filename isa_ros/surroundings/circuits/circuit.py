@@ -14,7 +14,7 @@ from isa_ros.errors import ConfigError, ParameterError, RunError
 from isa_ros.surroundings.circuits.network import (
     circuit_advance, circuit_rates, WORK_ROWS)
 from isa_ros.surroundings.circuits.nodes import (
-    feeding_capacity, gas_volume, node_capacity, node_energy, node_pressure)
+    feeding_capacity, gas_volume, node_energy, node_pressure)
 from isa_ros.surroundings.circuits.plan import Network, network_of
 from isa_ros.surroundings.circuits.rest import at_rest, of_return
 from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
@@ -102,11 +102,8 @@ class Circuit:
         return network, steps
 
     def _refuse_small(self, fed: Fed, node: np.record) -> None:
-        """Refuse a manifold too small for its actuators to integrate, at its precharge  (C16)."""
-        theta = float(node.gas.theta_a)
-        p_gas = node.gas.amount * theta / node.gas.v_0 if node.gas.v_0 > 0.0 else 0.0
-        c = float(node_capacity(1.01 * p_gas, theta, node))
-        holds, bound = c / fed.flow_slope, PORT_STEPS * PLANT_STEP
+        """Refuse a manifold whose oil, without an accumulator, is too small to feed  (C16)."""
+        holds, bound = float(node.c) / fed.flow_slope, PORT_STEPS * PLANT_STEP
         if holds < bound:
             raise ParameterError(
                 f'{self._name}: parts.{fed.place}: capacity over flow slope of its actuators = '

@@ -50,21 +50,8 @@ def _leaking() -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BlockPart(Parameters):
-    """A valve that is open with current, and shuts at the emergency stop."""
-
-    inlet: str = name('a manifold')
-    outlet: str = name('a manifold')
-    rated_lpm: float = parameter('flow at the rated drop', 'l/min', gt=0.0, le=10000.0)
-    rated_drop_mpa: float = rated()
-    time_constant_ms: float = _lag()
-    stuck: float = _stuck()
-    leakage_lpm_per_mpa: float = _leaking()
-
-
-@dataclass(frozen=True, kw_only=True)
-class DumpPart(Parameters):
-    """A valve that is shut with current, and opens at the emergency stop."""
+class SwitchedPart(Parameters):
+    """A valve whose current the emergency stop takes."""
 
     inlet: str = name('a manifold')
     outlet: str = name('a manifold or the tank')
@@ -73,6 +60,18 @@ class DumpPart(Parameters):
     time_constant_ms: float = _lag()
     stuck: float = _stuck()
     leakage_lpm_per_mpa: float = _leaking()
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockPart(SwitchedPart):
+    """A valve that is open with current, and shuts at the emergency stop."""
+
+    outlet: str = name('a manifold')
+
+
+@dataclass(frozen=True, kw_only=True)
+class DumpPart(SwitchedPart):
+    """A valve that is shut with current, and opens at the emergency stop."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,15 +99,12 @@ class UnloadingPart(Parameters):
                 'MPa: between them it stays as it is')
 
 
-Switched = BlockPart | DumpPart | UnloadingPart
-
-
 def through(lpm: float, drop_mpa: float) -> float:
     """Return K of an orifice with this flow at this drop, m3/s/sqrt(Pa)."""
     return lpm * LPM / math.sqrt(drop_mpa * MPA)
 
 
-def orifice_fields(sheet: Switched, has_current: bool) -> tuple[float, ...]:
+def orifice_fields(sheet: SwitchedPart | UnloadingPart, has_current: bool) -> tuple[float, ...]:
     """Return the fields of the `ORIFICE` of a valve."""
     p_on, p_off = (sheet.opens_mpa * MPA, sheet.shuts_mpa * MPA) if isinstance(
         sheet, UnloadingPart) else (0.0, 0.0)

@@ -15,7 +15,8 @@ from isa_ros.surroundings.circuits.check import CheckPart
 from isa_ros.surroundings.circuits.line import LinePart
 from isa_ros.surroundings.circuits.manifold import ManifoldPart, TankPart
 from isa_ros.surroundings.circuits.oil import Oil
-from isa_ros.surroundings.circuits.orifice import BlockPart, DumpPart, UnloadingPart
+from isa_ros.surroundings.circuits.orifice import (
+    BlockPart, DumpPart, SwitchedPart, UnloadingPart)
 from isa_ros.surroundings.circuits.pump import PumpPart
 from isa_ros.surroundings.circuits.relief import FilterPart, ReliefPart
 from isa_ros.surroundings.return_line import HeldReturn, ReturnLine
@@ -82,7 +83,7 @@ class CircuitSupply(Parameters):
     @property
     def is_switched(self) -> bool:
         """Return whether the emergency stop takes its current: it has a valve for that."""
-        return any(isinstance(part, BlockPart | DumpPart) for part in self.by_name.values())
+        return any(isinstance(part, SwitchedPart) for part in self.by_name.values())
 
     def return_of(self, manifold: str) -> str:
         """Return the place to which the actuators on a manifold return their oil."""

@@ -60,12 +60,14 @@ def test_what_cannot_be_integrated_is_refused_by_name(text: str, said: str) -> N
         circuit_of(text, 'left', 'right')
 
 
-def test_a_manifold_that_does_not_hold_its_pressure_is_refused() -> None:
-    """C/slope below four plant steps (C16)."""
+@pytest.mark.parametrize('more', [
+    '', 'buffer: {kind: accumulator, at: main, gas_volume_l: 5.0, precharge_mpa: 10.0}\n'])
+def test_a_manifold_that_does_not_hold_its_pressure_is_refused(more: str) -> None:
+    """C/slope below four plant steps (C16), of the oil that is left of an empty accumulator."""
     with pytest.raises(ParameterError, match=(
             r'supply: parts\.main: capacity over flow slope of its actuators = [\d.]+ ms, must be '
             r'>= 0.08 ms \(four plant steps\); enlarge its oil_volume_l')):
-        Circuit(sheet_of(SIMPLE), MS, [Fed('main', 1e4 * SLOPE)])
+        Circuit(sheet_of(SIMPLE + more), MS, [Fed('main', 1e4 * SLOPE)])
 
 
 def test_rates_are_those_of_one_manifold() -> None:
