@@ -7,6 +7,7 @@ Importing this module takes neither numba nor ROS: the programs use it before an
 from collections.abc import Callable
 import contextlib
 import errno
+import gc
 import os
 import signal
 import sys
@@ -42,6 +43,7 @@ def run_program(
 
     While it is loaded nothing has begun that must be finished: a signal ends the process at once,
     with exit code ``interrupted``. An exception instead could be swallowed by an imported library.
+    Nothing is collected meanwhile: looking through what imports make takes a seventh of their time.
     """
     def end_at_once(number: int, frame: FrameType | None) -> NoReturn:
         if interrupted:
@@ -51,9 +53,11 @@ def run_program(
 
     try:
         before = replaced_handlers(end_at_once)
+        gc.disable()
         try:
             run = load()
         finally:
+            gc.enable()
             for number, handler in before.items():
                 signal.signal(number, handler)
         sys.unraisablehook = _not_raised

@@ -2,6 +2,8 @@
 
 import errno
 from pathlib import Path
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 from isa_ros.errors import ConfigError, one_line, SimulationDiverged
@@ -71,3 +73,19 @@ def test_defects_are_reported_to_the_maintainer() -> None:
     setup = (ROOT / 'setup.py').read_text()
     assert f"maintainer='{maintainer.text}'" in setup
     assert f"maintainer_email='{maintainer.get('email')}'" in setup
+
+
+@pytest.mark.parametrize(('load', 'printed'), [
+    ('lambda: print(gc.isenabled()) or run', 'False\nTrue\n3\n'),
+    ('lambda: {}["none"]', '70\n')])
+def test_nothing_is_collected_while_a_program_is_loaded(load: str, printed: str) -> None:
+    done = subprocess.run([sys.executable, '-c', f"""
+import gc
+from isa_ros.processes.ending import run_program
+def run():
+    print(gc.isenabled())
+    return 3
+print(run_program('isa', {load}))
+assert gc.isenabled()
+"""], capture_output=True, text=True, timeout=60.0)
+    assert done.stdout == printed
