@@ -94,25 +94,32 @@ def own_targets() -> list[str]:
     return ['x86-64-v3'] * (_V3 <= set(words)) + ['x86-64']
 
 
-@cache
-def _libraries() -> tuple[ctypes.CDLL, ...]:
-    """Load the fastest library of this package that runs on this processor, if there is one."""
+def library_path() -> Path | None:
+    """Return the fastest library that runs on this processor, None if there is none."""
     if any(f'NUMBA_{name}' in os.environ for name in SETTINGS):
-        return ()
-    paths = [SHIPPED / f'{target}.so' for target in own_targets()]
-    return tuple(ctypes.CDLL(str(path)) for path in paths if path.exists())[:1]
+        return None
+    paths = (SHIPPED / f'{target}.so' for target in own_targets())
+    return next(filter(Path.exists, paths), None)
+
+
+@cache
+def _library() -> ctypes.CDLL | None:
+    """Load the library of this process, once."""
+    path = library_path()
+    return None if path is None else ctypes.CDLL(str(path))
 
 
 def _found(entry: Named) -> tuple[ctypes.CDLL, str] | None:
     """Return the library that has an entry, and its symbol; None if there is none."""
-    for library in _libraries():
-        try:
-            symbol = entry.symbol
-            library[symbol]
-        except (AttributeError, UnknownValue):
-            continue
-        return library, symbol
-    return None
+    library = _library()
+    if library is None:
+        return None
+    try:
+        symbol = entry.symbol
+        library[symbol]
+    except (AttributeError, UnknownValue):
+        return None
+    return library, symbol
 
 
 def address_in_library(entry: Named) -> int:

@@ -12,13 +12,23 @@ _GROUP = 'kernels'
 
 
 def kernels() -> Iterator[Finding]:
-    """Yield the state of the cache and of the compiler of C."""
+    """Yield the library, the state of the cache, and the compiler of C."""
     from isa_ros.core.kernel_directory import CACHE
+    from isa_ros.core.kernel_library import library_path
+    yield loaded_from(library_path())
     yield kept_in(CACHE)
     found = shutil.which(C_COMPILER)
     yield Finding(_GROUP, C_COMPILER, found) if found else Finding(
         _GROUP, C_COMPILER, 'missing', Verdict.NOTE,
         'only for libraries of kernels: apt install gcc')
+
+
+def loaded_from(library: Path | None) -> Finding:
+    """Return the library of compiled kernels that starts load."""
+    if library is None:
+        return Finding(_GROUP, 'library', 'none', Verdict.NOTE,
+                       'starts load numba; in a checkout: python -m scripts.make_kernels')
+    return Finding(_GROUP, 'library', f'{library}, {in_megabytes(library.stat().st_size)}')
 
 
 def kept_in(directory: Path | None) -> Finding:

@@ -34,7 +34,8 @@ def test_the_command_prints_all_groups_and_writes_them(
     assert re.search(r'^0 problems, \d+ notes?$', printed.splitlines()[-1])
     tree = json.loads(path.read_text())
     assert {row['group'] for row in tree} == {'software', 'ROS', 'host', 'kernels'}
-    assert {'memlock', 'rtprio', 'shared memory', 'cache', 'cc'} <= {row['name'] for row in tree}
+    assert {'memlock', 'rtprio', 'shared memory', 'library', 'cache', 'cc'} <= {
+        row['name'] for row in tree}
 
 
 def test_a_wrong_domain_is_a_problem_and_1(
@@ -135,6 +136,15 @@ def test_shared_memory_is_that_of_its_directory(
         os, 'statvfs', lambda path: SimpleNamespace(f_frsize=4096, f_blocks=25_000))
     assert limits.shared(tmp_path).found == f'102 MB in {tmp_path} (isa_ros uses none)'
     assert limits.shared(tmp_path / 'absent').verdict is Verdict.NOTE
+
+
+def test_the_library_of_kernels_is_named(tmp_path: Path) -> None:
+    none = kernels.loaded_from(None)
+    assert (none.found, none.verdict) == ('none', Verdict.NOTE)
+    assert 'python -m scripts.make_kernels' in none.advice
+    path = tmp_path / 'x86-64.so'
+    path.write_bytes(bytes(3 << 20))
+    assert kernels.loaded_from(path)[2:4] == (f'{path}, 3 MB', Verdict.GOOD)
 
 
 def test_the_kernels_of_a_cache_are_counted(tmp_path: Path) -> None:
