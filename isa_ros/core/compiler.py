@@ -73,8 +73,10 @@ def compiled_entry(entry: Entry) -> Any:
 
 def result_of(entry: Entry) -> Kind | None:
     """Return the kind of what the kernel of a called entry returns, None: nothing."""
-    given = tuple(type_of(entry.kind).types)
     own = entry.kernel.compiled
+    given = tuple(type_of(entry.kind).types)
+    left_out = own.py_func.__code__.co_argcount - len(given)
+    given += tuple(map(types.Omitted, (own.py_func.__defaults__ or ())[-left_out:][:left_out]))
     own.compile(given)
     return result_kind(own.overloads[given].signature.return_type)
 

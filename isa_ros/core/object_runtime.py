@@ -268,6 +268,11 @@ gaps:
 
 # Of an array that a kernel has allocated: none does, so nothing gets here.
 _RELEASE = """
+define weak_odr hidden i8 @isa_counted(ptr %count, i64 %by, i32 %condition) noreturn nounwind {
+  call void @llvm.trap()
+  unreachable
+}
+
 define weak_odr hidden void @NRT_MemInfo_call_dtor(ptr %array) noreturn nounwind {
   call void @llvm.trap()
   unreachable

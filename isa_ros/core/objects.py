@@ -38,6 +38,7 @@ TARGETS: Mapping[str, Target] = {target.name: target for target in (
     Target('x86-64', 'x86_64-unknown-linux-gnu', 'x86-64'),
     Target('aarch64', 'aarch64-unknown-linux-gnu', 'generic'))}
 """By name; of one architecture the fastest first."""
+_COUNTED = 'llvm.x86.atomic.sub.cc.i64'
 _V3 = ('avx2', 'bmi', 'bmi2', 'f16c', 'fma', 'lzcnt', 'movbe')
 """What x86-64-v3 has beyond x86-64, as LLVM names it."""
 
@@ -155,7 +156,22 @@ def _module_of(name: str, entry: Entry) -> Any:
             name=result_symbol(name), size=len(form) + 1, text=form.replace('"', '\\22'))
     module.link_in(llvm.parse_assembly(text))
     module.get_function(own).linkage = 'internal'
-    return module
+    return _portable(module)
+
+
+def _portable(module: Any) -> Any:
+    """
+    Return a module without x86's instruction by which references to an array are counted down.
+
+    Machine code of the compiling processor leaves it behind. It is for arrays that a kernel has
+    allocated, and none of an object has.
+    """
+    if all(function.name != _COUNTED for function in module.functions):
+        return module
+    lines = (line for line in str(module).splitlines()
+             if not (line.startswith('declare ') and f'@{_COUNTED}(' in line))
+    text = '\n'.join((*lines, 'declare i8 @isa_counted(ptr, i64, i32)'))
+    return llvm.parse_assembly(text.replace(f'@{_COUNTED}(', '@isa_counted('))
 
 
 def _retargeted(module: Any, target: Target, machine: Any) -> Any:

@@ -41,6 +41,13 @@ def of_many(array, pair, is_on):
         total += array[k]
     return total, (pair[0], is_on), np.uint64(2 ** 63) + np.uint64(pair[1])
 @kernel
+def scaled(x, by=2.0):
+    return x * by
+@kernel
+def table(array):
+    rows = array.reshape(2, 2)
+    return rows[1, 0] - rows[0, 1]
+@kernel
 def fill(array):
     array[:] = 7.0
 @kernel
@@ -62,6 +69,7 @@ def home(tmp_path_factory):
         sys.path.remove(str(path))
     row, array = np.zeros(1, MASS)[0], np.zeros(4)
     calls = {'times': [(2,), (2.5,)], 'of_record': [(row, 0.5)], 'fill': [(array,)],
+             'scaled': [(1.5,)], 'table': [(array,)],
              'of_many': [(array, (1, 2), True), (array[::2], (1, 2), True)]}
     entries = [Entry(getattr(own, name), kind_of(arguments), is_called=True)
                for name, several in calls.items() for arguments in several]
@@ -93,8 +101,10 @@ print(own.of_record(row, 0.5), row)
 array = np.arange(5.0)
 print(own.of_many(array, (4, 3), True), own.of_many(array[::2], (4, 3), False))
 print(own.fill(array), array.sum())
+print(own.scaled(1.5), own.table(np.array([1.0, 2.0, 9.0, 4.0])))
 """) == ('Found(size=0.75, count=6) (1.5, 6)\n'
-         f'(10.0, (4, True), {2 ** 63 + 3}) (6.0, (4, False), {2 ** 63 + 3})\nNone 35.0\n')
+         f'(10.0, (4, True), {2 ** 63 + 3}) (6.0, (4, False), {2 ** 63 + 3})\nNone 35.0\n'
+         '3.0 7.0\n')
 
 
 def test_bound_kernels_are_found(home):
@@ -103,6 +113,15 @@ from isa_ros.core.bound import Bound
 rows = own.Rows(np.array([1, 5]))
 print(Bound(own.count, rows).run(), rows.numbers)
 """) == '8 [1 8]\n'
+
+
+def test_a_kernel_is_looked_up_once_for_each_kind(home):
+    assert run(home, """
+from isa_ros.core import kernel
+own.times(2), own.times(2.5)
+kernel.call_in_library = None
+print(own.times(3), own.times(0.5))
+""") == '9 1.5\n'
 
 
 NOT_FOUND = 'ModuleNotFoundError: import of llvmlite halted; None in sys.modules'
@@ -114,6 +133,7 @@ NOT_FOUND = 'ModuleNotFoundError: import of llvmlite halted; None in sys.modules
     ('own.FACTOR = 4; own.times(2)', SOURCE, {}),
     ('own.times(True)', SOURCE, {}),
     ('own.times(x=2)', SOURCE, {}),
+    ('own.scaled(1.5, by=4.0)', SOURCE, {}),
     ('own.times("2")', SOURCE, {}),
     ('own.fill(np.zeros(2, np.float32))', SOURCE, {}),
     ('own.times(2)', SOURCE, {'NUMBA_BOUNDSCHECK': '1'}),

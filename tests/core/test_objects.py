@@ -62,7 +62,7 @@ def test_only_the_entries_are_seen(entries, name):
     seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
     assert seen == {
         *entries, 'floor', 'ceil', 'rint', 'fmod', 'numba_frexp', 'memset', 'memcpy', 'memmove',
-        'numba_attempt_nocopy_reshape', 'NRT_MemInfo_call_dtor'}
+        'numba_attempt_nocopy_reshape', 'NRT_MemInfo_call_dtor', 'isa_counted'}
     assert undefined_symbols(code) == []
 
 
@@ -117,6 +117,27 @@ def take_sine(own):
 def test_undefined_symbols_are_refused():
     with pytest.raises(ConfigError, match=r'^object of isa_sine: undefined sin, must have none$'):
         object_of({'isa_sine': entry_of(take_sine, kind_of(numbers()))}, own_target())
+
+
+@kernel
+def swap(own):
+    """Swap two numbers of a table."""
+    rows = own.numbers.reshape(2, 2)
+    rows[0, 1], rows[1, 0] = rows[1, 0], rows[0, 1]
+    return 5
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_another_shape_of_an_array_is_for_all_targets(name, tmp_path):
+    """Also once the compiling processor's machine code was made."""
+    given = Rows(np.array([1.0, 2.0, 3.0, 4.0]))
+    assert (Bound(swap, given).run(), given.numbers.tolist()) == (5, [1.0, 3.0, 2.0, 4.0])
+    code = object_of({'isa_swap': entry_of(swap, kind_of(given))}, TARGETS[name])
+    assert undefined_symbols(code) == []
+    if TARGETS[name].triple == own_target().triple:
+        library_of([code], tmp_path / 'lib.so')
+        assert loaded(tmp_path / 'lib.so', 'isa_swap')(given) == 5
+        assert given.numbers.tolist() == [1.0, 2.0, 3.0, 4.0]
 
 
 @kernel
