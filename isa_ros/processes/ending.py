@@ -43,7 +43,7 @@ def run_program(
 
     While it is loaded nothing has begun that must be finished: a signal ends the process at once,
     with exit code ``interrupted``. An exception instead could be swallowed by an imported library.
-    Nothing is collected meanwhile: looking through what imports make takes a seventh of their time.
+    Nothing is collected meanwhile: looking through what imports make is a seventh of their time.
     """
     def end_at_once(number: int, frame: FrameType | None) -> NoReturn:
         if interrupted:
