@@ -146,7 +146,10 @@ def recover(options: Namespace) -> bool:
 
 
 def compare(options: Namespace) -> bool:
-    """Compare the configurations and the messages of two bags."""
+    """Compare the configurations and the messages of two bags, or with a mapping signals."""
+    if options.mapping:
+        from isa_ros.cli.measured_commands import compare as compare_measured
+        return compare_measured(options)
     from isa_ros.bag.reader import Bag
     from isa_ros.replay.comparison import compared
     from isa_ros.replay.tolerances import load_tolerances
@@ -211,7 +214,10 @@ def tune(options: Namespace) -> bool:
 
 
 def identify(options: Namespace) -> bool:
-    """Estimate the parameters of a bag's actuators."""
+    """Estimate the parameters of a bag's actuators, or with a mapping of a measured one."""
+    if options.mapping:
+        from isa_ros.cli.measured_commands import identify as identify_measured
+        return identify_measured(options)
     from isa_ros.analysis.identification.identification import as_tree, identify_bag, table
     from isa_ros.text.json_file import write_tree
     found = identify_bag(options.bag, options.actuator)

@@ -14,8 +14,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
-    bus_commands, commands, export_command, host_commands, response_arguments, run_arguments,
-    shared_arguments, talk)
+    bus_commands, commands, export_command, host_commands, measured_commands, response_arguments,
+    run_arguments, shared_arguments, talk)
 from isa_ros.cli.completion.scripts import SHELLS
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
@@ -127,6 +127,7 @@ def _compare(parser: argparse.ArgumentParser) -> None:
     shared_arguments.bag(parser, 'expected')
     shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
+    measured_commands.mapping(parser)
     shared_arguments.json_file(parser, 'every difference')
     parser.add_argument(
         '--report', type=Path, metavar='FILE.html', nargs='?', const=Path('compare.html'),
@@ -147,6 +148,9 @@ def _report(parser: argparse.ArgumentParser) -> None:
 def _identify(parser: argparse.ArgumentParser) -> None:
     shared_arguments.bag(parser)
     parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
+    measured_commands.mapping(parser)
+    parser.add_argument(
+        '--config', metavar='CONFIG', help='of the actuator that a mapping is of')
     shared_arguments.json_file(parser)
 
 
@@ -253,6 +257,8 @@ _COMMANDS = {
     'tune': (response_arguments.tune, commands.tune,
              'find gains of a loop for a wanted phase margin and bandwidth over the stroke'),
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
+    'against': (measured_commands.against_arguments, measured_commands.against,
+                'simulate with measured commands, compare, and find what closes the gap'),
     'study': (_study, commands.study,
               'vary one parameter and show the performance of the actuators'),
     'faults': (_faults, commands.faults,

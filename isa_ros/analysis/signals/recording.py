@@ -12,7 +12,7 @@ from isa_ros.plant.plant import plant_record
 import numpy as np
 
 SHORTEST = 0.5          # s, below which the scatter cannot be estimated
-_SLOWEST_STEP = 2e-3    # s, with which a valve of 100 Hz can just be followed
+SLOWEST_STEP = 2e-3    # s, with which a valve of 100 Hz can just be followed
 _JITTER = 1e-6          # s, of a sample against the grid
 _SIGNALS = ('position', 'force', 'pressure_a', 'pressure_b', 'spool')
 _SUPPLY = 'supply_pressure'
@@ -118,7 +118,7 @@ def _grid(t: np.ndarray, bag: Path) -> float:
         raise BagError(
             f'{bag}: samples are missing, a step of {1e3 * (step + worst):g} ms among '
             f'steps of {1e3 * step:g} ms')
-    if step > _SLOWEST_STEP + _JITTER:
+    if step > SLOWEST_STEP + _JITTER:
         raise BagError(f'{bag}: sampled every {1e3 * step:g} ms, must be at least every '
-                       f'{1e3 * _SLOWEST_STEP:g} ms')
+                       f'{1e3 * SLOWEST_STEP:g} ms')
     return step

@@ -1,0 +1,250 @@
+"""
+Parameters that bring a simulated machine closer to a measured one: least squares, intervals.
+
+The residuals of all signals that both have, each over the standard deviation of the measured one,
+are minimised within the declared ranges (scipy's trust region, its derivatives by differences of
+`DIFFERENCE`). Their 95 % intervals allow for residuals that hang together over `CORRELATION`; they
+hold for this model: what it lacks, the parameters take upon them.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from typing import Any, NamedTuple
+
+from isa_ros.analysis.identification.estimation import half_widths, Linearised
+from isa_ros.analysis.measured.fit import Floats
+from isa_ros.analysis.measured.measurement import Measurement
+from isa_ros.analysis.measured.playback import played
+from isa_ros.analysis.signals.signals import Signal
+from isa_ros.core.parameter import Parameters
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
+from isa_ros.scripting.run import Run
+import numpy as np
+from scipy.optimize import least_squares
+
+DEFAULT = ('load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus')
+"""Keys that are free if none are named, as far as the actuator has them."""
+
+CLOCK, DELAY = 'clock_ppm', 'delay_ms'
+"""Free keys of the measurement itself: its clock and its delay against those of its commands."""
+
+DIFFERENCE = 0.1        # of a parameter's size: what is less drowns in the steps of converters
+REACH = 10.0            # a parameter is searched between a tenth and ten times its value
+CORRELATION = 0.4       # s, as for `isa identify`
+WIDEST = 0.5            # half of an interval over the estimate, beyond which it is not determined
+POINTS = 2000           # samples of a signal among the residuals, at most
+_RANGES = {CLOCK: (-1000.0, 1000.0, 100.0), DELAY: (-50.0, 50.0, 1.0)}
+"""Bounds, and size of a step."""
+_REFUSED = 10.0         # times the residuals of the start: those of values that are refused
+_REFINEMENTS = 3        # steps with central differences, at most
+_SMALL_STEP = 0.005     # of a parameter's size: less is not taken further
+_MOST_RUNS = 30         # of the search, without those for its derivatives
+
+
+class Free(NamedTuple):
+    """One free parameter: its start, bounds and size, in the unit of its key."""
+
+    key: str
+    start: float
+    low: float
+    high: float
+    size: float
+    unit: str
+
+
+class Closed(NamedTuple):
+    """One parameter after the search; ``half_width`` of its 95 % interval."""
+
+    free: Free
+    value: float
+    half_width: float
+
+    @property
+    def is_determined(self) -> bool:
+        """Return whether the data determine it."""
+        return self.half_width <= WIDEST * max(abs(self.value), self.free.size)
+
+
+def free_of(run: Run, name: str, keys: Sequence[str]) -> list[Free]:
+    """
+    Return the free parameters of an actuator: KEY or KEY=LOW:HIGH, below plant, reu or load.
+
+    Raises
+    ------
+    ConfigError
+        A key is unknown or no number, or bounds are needed or wrong.
+
+    """
+    own = run.configuration.actuator(name)
+    found = []
+    for text in keys or DEFAULT:
+        key, _, bounds = text.partition('=')
+        if key in _RANGES:
+            low, high, size = _RANGES[key]
+            found.append(Free(key, 0.0, low, high, size, key.rpartition('_')[2]))
+            continue
+        root = {'load': own.load, 'plant': own.sheet, 'reu': own.sheet}.get(key.partition('.')[0])
+        if not keys and (root is None or not _has(root, key)):
+            continue
+        found.append(_free(key, bounds, _declared(root, key), _value(root, key)))
+    return found
+
+
+def _free(key: str, bounds: str, declared: Mapping[str, Any], start: float) -> Free:
+    low, high = sorted((start / REACH, start * REACH))
+    if bounds:
+        try:
+            low, high = map(float, bounds.split(':'))
+        except ValueError:
+            raise ConfigError(f'--free {key}={bounds}: must be KEY=LOW:HIGH') from None
+    own = declared['bounds']
+    low = max(low, own.get('ge', own.get('gt', -np.inf)))
+    high = min(high, own.get('le', own.get('lt', np.inf)))
+    if not low < high:
+        raise ConfigError(
+            f'--free {key}: is {start:g}, give bounds within its range: {key}=LOW:HIGH')
+    return Free(key, min(max(start, low), high), low, high,
+                abs(start) or 0.25 * (high - low), str(declared.get('unit', '')))
+
+
+def _path(root: Any, key: str) -> tuple[Any, str]:
+    """Return the parameter set that has the last part of a key, and that part."""
+    *sections, last = key.split('.')
+    here = root
+    for section in sections[1:] if sections and sections[0] == 'load' else sections:
+        here = getattr(here, section, None)
+    return here, last
+
+
+def _has(root: Any, key: str) -> bool:
+    here, last = _path(root, key)
+    return isinstance(here, Parameters) and any(f.name == last for f in fields(here))
+
+
+def _declared(root: Any, key: str) -> Mapping[str, Any]:
+    here, last = _path(root, key)
+    known = [f.name for f in fields(here)] if isinstance(here, Parameters) else []
+    if last not in known or key.partition('.')[0] not in ('load', 'plant', 'reu'):
+        raise ConfigError(f'--free {key}: is unknown; {alternatives(last, known)}')
+    declared: Mapping[str, Any] = next(f.metadata for f in fields(here) if f.name == last)
+    if 'bounds' not in declared:
+        raise ConfigError(f'--free {key}: is no number')
+    return declared
+
+
+def _value(root: Any, key: str) -> float:
+    here, last = _path(root, key)
+    return float(getattr(here, last))
+
+
+def changed(run: Run, name: str, values: Mapping[str, float]) -> Run:
+    """Return the run with values by free key; those of the measurement change nothing in it."""
+    return run.replace({
+        f'actuators.{name}.{key if key.startswith("load.") else f"parameters.{key}"}': value
+        for key, value in values.items() if key not in _RANGES})
+
+
+def closed(
+        run: Run, name: str, measurement: Measurement, free: Sequence[Free], duration: float,
+        progress: Callable[[int], object] = lambda n: None) -> list[Closed]:
+    """
+    Return the free parameters with which the run is closest to a measurement.
+
+    ``run`` as `prepared`; ``progress`` is called with the number of finished runs.
+    """
+    size = np.array([own.size for own in free])
+    grid = _grid(measurement, duration)
+    start: Floats | None = None
+    n_runs = 0
+
+    def residuals(theta: Floats) -> Floats:
+        nonlocal start, n_runs
+        values = dict(zip([own.key for own in free], (theta * size).tolist()))
+        n_runs += 1
+        progress(n_runs)
+        try:
+            simulated = played(changed(run, name, values), name, measurement, duration)
+        except (ParameterError, SimulationDiverged):
+            if start is None:
+                raise
+            return start * _REFUSED
+        found = _residuals(measurement, simulated, grid, values)
+        start = found if start is None else start
+        return found
+
+    low, high = (np.array([getattr(own, end) / own.size for own in free])
+                 for end in ('low', 'high'))
+    found = least_squares(
+        residuals, [own.start / own.size for own in free], jac='2-point', diff_step=DIFFERENCE,
+        x_scale=1.0, bounds=(low, high), ftol=1e-3, xtol=1e-3, max_nfev=_MOST_RUNS)
+    theta, widths = _refined(residuals, found.x, low, high, grid)
+    return [Closed(own, float(x * own.size), float(width * own.size))
+            for own, x, width in zip(free, theta, widths)]
+
+
+def _refined(
+        residuals: Callable[[Floats], Floats], theta: Floats, low: Floats, high: Floats,
+        grid: Floats) -> tuple[Floats, Floats]:
+    """
+    Return theta after steps with central differences, and the half-widths, each (n,).
+
+    What the differences leave over, half of f(theta + h) - 2 f(theta) + f(theta - h), is the
+    curvature and the roughness of the simulation: an error of the residuals beside their noise.
+    """
+    here = residuals(theta)
+    for _ in range(_REFINEMENTS):
+        slopes, rough = _central(residuals, theta, here, low, high)
+        step = np.linalg.lstsq(slopes, -here, rcond=1e-10)[0]
+        better = np.clip(theta + step, low, high)
+        there = residuals(better)
+        gained = float(here @ here) - float(there @ there)
+        if gained <= 0.0:
+            break
+        theta, here = better, there
+        if np.all(np.abs(step) < _SMALL_STEP):
+            break
+    groups = np.tile(np.arange(len(grid)), len(here) // len(grid))
+    lags = max(1, round(CORRELATION / float(np.median(np.diff(grid)))))
+    return theta, half_widths(Linearised(here, -slopes, -slopes), groups, lags, rough)
+
+
+def _central(
+        residuals: Callable[[Floats], Floats], theta: Floats, here: Floats, low: Floats,
+        high: Floats) -> tuple[Floats, list[Floats]]:
+    """Return the derivatives (n_residuals, n) of the residuals, and what they leave over."""
+    slopes, rough = [], []
+    for k in range(len(theta)):
+        above, below = theta.copy(), theta.copy()
+        above[k] = min(theta[k] + DIFFERENCE, high[k])
+        below[k] = max(theta[k] - DIFFERENCE, low[k])
+        up, down = residuals(above), residuals(below)
+        slopes.append((up - down) / (above[k] - below[k]))
+        rough.append(0.5 * (up - 2.0 * here + down))
+    return np.stack(slopes, axis=1), rough
+
+
+def shifted(signal: Signal, values: Mapping[str, float]) -> Signal:
+    """Return a measured signal by the clock of its commands, for values of `CLOCK` and `DELAY`."""
+    clock, delay = values.get(CLOCK, 0.0) * 1e-6, values.get(DELAY, 0.0) * 1e-3
+    return Signal(signal.t / (1.0 + clock) - delay, signal.values)
+
+
+def _grid(measurement: Measurement, duration: float) -> Floats:
+    """Return the instants of the residuals, (n,), s."""
+    step = max(max(float(np.median(np.diff(own.t))) for own in measurement.outputs.values()),
+               duration / POINTS)
+    return np.arange(0.0, duration, step)
+
+
+def _residuals(
+        measurement: Measurement, simulated: Mapping[str, Signal], grid: Floats,
+        values: Mapping[str, float]) -> Floats:
+    """Return the residuals of all signals, one after the other, each as long as the grid."""
+    found = []
+    for quantity, own in simulated.items():
+        measured = shifted(measurement.outputs[quantity], values)
+        spread = float(np.std(measured.values)) or 1.0
+        found.append((np.interp(grid, own.t, own.values)
+                      - np.interp(grid, measured.t, measured.values)) / spread)
+    return np.concatenate(found)

@@ -1,0 +1,90 @@
+"""A measurement in SI over its own time, read by a mapping from a CSV file or any bag."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from isa_ros.analysis.measured.bag_file import is_bag, read_fields
+from isa_ros.analysis.measured.csv_file import Floats, read_columns
+from isa_ros.analysis.measured.mapping import MappedSignal, MeasurementMapping
+from isa_ros.analysis.measured.quantities import QUANTITIES, scale_of
+from isa_ros.analysis.signals.signals import Signal
+from isa_ros.errors import BagError, ConfigError
+import numpy as np
+
+
+class Measurement(NamedTuple):
+    """Signals by quantity: t in s from the first sample, (n,), values in SI, (n,)."""
+
+    name: str
+    signals: Mapping[str, Signal]
+
+    @property
+    def commands(self) -> dict[str, Signal]:
+        """Return the signals that commanded the machine."""
+        return {name: own for name, own in self.signals.items() if QUANTITIES[name].mode}
+
+    @property
+    def outputs(self) -> dict[str, Signal]:
+        """Return the others."""
+        return {name: own for name, own in self.signals.items() if not QUANTITIES[name].mode}
+
+
+def read_measurement(path: Path, mapping: MeasurementMapping, is_rotary: bool) -> Measurement:
+    """
+    Return a measurement.
+
+    Raises
+    ------
+    BagError
+        The file cannot be read, or its times do not rise.
+    ConfigError
+        A column, topic, field or unit of the mapping is not there.
+
+    """
+    raw = _of_bag(path, mapping) if is_bag(path) else _of_csv(path, mapping)
+    found = {}
+    for name, (t, numbers) in raw.items():
+        own = mapping.signals[name]
+        scale = scale_of(own.unit, QUANTITIES[name], is_rotary, own.where)
+        if not (np.diff(t) > 0.0).all():
+            k = int(np.argmin(np.diff(t) > 0.0))
+            raise BagError(f'{path}: {name}: the time does not rise after sample {k + 1}, '
+                           f't = {t[k]:g} s')
+        if not np.isfinite(numbers).all():
+            k = int(np.argmin(np.isfinite(numbers)))
+            raise BagError(f'{path}: {name}: sample {k + 1} is {numbers[k]}, must be finite')
+        found[name] = Signal(
+            (t - own.delay) / (1.0 + mapping.clock), scale * (own.factor * numbers + own.offset))
+    return Measurement(path.name, found)
+
+
+def _of_csv(path: Path, mapping: MeasurementMapping) -> dict[str, tuple[Floats, Floats]]:
+    columns = {name: _column(own) for name, own in mapping.signals.items()}
+    if mapping.time is None and mapping.rate is None:
+        raise ConfigError(f'{mapping.name}: lacks time, either column and unit or rate_hz')
+    wanted = [*columns.values(), *([] if mapping.time is None else [mapping.time])]
+    found = read_columns(path, wanted, mapping.skip_lines, mapping.name)
+    n = len(found[wanted[0]])
+    if mapping.time is None:
+        t = np.arange(n) / (mapping.rate or 1.0)
+    else:
+        t = (found[mapping.time] - found[mapping.time][0]) * mapping.time_scale
+    return {name: (t, found[column]) for name, column in columns.items()}
+
+
+def _column(own: MappedSignal) -> str | int:
+    if own.source.column is None:
+        raise ConfigError(f'{own.where}: lacks column, the measurement is a CSV file')
+    return own.source.column
+
+
+def _of_bag(path: Path, mapping: MeasurementMapping) -> dict[str, tuple[Floats, Floats]]:
+    wanted: dict[str, list[str]] = {}
+    for own in mapping.signals.values():
+        if not own.source.topic:
+            raise ConfigError(f'{own.where}: lacks topic and field, the measurement is a bag')
+        wanted.setdefault(own.source.topic, []).append(own.source.field)
+    found = read_fields(path, wanted)
+    return {name: found[f'{own.source.topic} {own.source.field}']
+            for name, own in mapping.signals.items()}

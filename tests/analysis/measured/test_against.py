@@ -1,0 +1,146 @@
+"""`isa against`: the parameters with which a measurement was made are found, within intervals."""
+
+from collections.abc import Iterator
+import json
+from pathlib import Path
+import warnings
+
+import isa_ros
+from isa_ros.analysis.measured.against import against, as_text, NONE
+from isa_ros.analysis.measured.closing import free_of
+from isa_ros.analysis.measured.mapping import load_mapping
+from isa_ros.analysis.measured.measurement import read_measurement
+from isa_ros.analysis.measured.playback import played, prepared
+from isa_ros.cli.main import main
+from isa_ros.errors import ConfigError
+import numpy as np
+import pytest
+from tests.analysis.measured.machine import CLOCK_PPM, measured
+
+DURATION = 3.0  # of CORRELATION, 0.4 s, enough for an interval
+TRUE = {'actuators.ram.load.inertia': 65.0,
+        'actuators.ram.parameters.plant.friction.viscous': 520.0}
+
+
+@pytest.fixture(scope='module')
+def press(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, Path]]:
+    """Return a measurement of a machine with `TRUE`, and its mapping."""
+    yield measured(tmp_path_factory.mktemp('press'), DURATION, TRUE)
+
+
+def test_without_noise_the_same_machine_is_met(tmp_path: Path) -> None:
+    """What is left is the rounding of the file and of the encoder at the start."""
+    path, mapping = measured(tmp_path, 0.5, {}, noise=0.0, clock_ppm=0.0)
+    found = against(path, mapping, isa_ros.load('rig_linear'), [NONE])
+    position = found.fits['position']
+    assert not isinstance(position, str)
+    assert position.nrmse < 1e-3 and abs(position.delay) < 1e-4
+    assert position.gain == pytest.approx(1.0, abs=1e-3)
+    assert not found.parameters and not found.improved
+
+
+@pytest.mark.slow
+def test_the_parameters_of_the_machine_are_found(press: tuple[Path, Path]) -> None:
+    """Each within its interval, and its interval useful; the fit of all signals improves."""
+    runs: list[int] = []
+    found = against(*press, isa_ros.load('rig_linear'), [
+        'load.inertia', 'plant.friction.viscous', 'clock_ppm'], None, runs.append)
+    inertia, viscous, clock = found.parameters
+    assert abs(inertia.value - 65.0) < inertia.half_width < 3.0 and inertia.free.start == 50.0
+    assert abs(viscous.value - 520.0) < viscous.half_width < 120.0
+    assert abs(clock.value - CLOCK_PPM) < clock.half_width
+    for quantity, before in found.fits.items():
+        after = found.improved_fits[quantity]
+        assert not isinstance(before, str) and not isinstance(after, str)
+        assert after.nrmse < 0.5 * before.nrmse, quantity
+    assert runs == list(range(1, len(runs) + 1))
+    text = as_text(found).splitlines()
+    assert text[0].startswith('ram, simulated against measured')
+    assert any(line.split()[:2] == ['load.inertia', '50'] and line.endswith('kg')
+               for line in text)
+
+
+def test_the_command_writes_numbers_and_figure(
+        press: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, mapping = press
+    assert main(['against', str(path), 'rig_linear', '--mapping', str(mapping), '--free', 'none',
+                 '--duration', '0.3', '--set', 'actuators.ram.load.inertia=65',
+                 '--json', str(tmp_path / 'x.json'), '--out', str(tmp_path / 'x.png')]) == 0
+    tree = json.loads((tmp_path / 'x.json').read_text())
+    assert (tree['measurement'], tree['actuator'], tree['parameters']) == ('press.csv', 'ram', [])
+    assert set(tree['fits']) == {'position', 'force', 'pressure_a', 'pressure_b'}
+    assert tree['fits']['position']['n'] == 301
+    assert (tmp_path / 'x.png').read_bytes().startswith(b'\x89PNG')
+    assert capsys.readouterr().out.splitlines()[1].split() == ['NRMSE', 'delay', 'gain', 'left']
+
+
+def test_the_run_begins_as_the_measurement_and_follows_its_command(
+        press: tuple[Path, Path], tmp_path: Path) -> None:
+    path, mapping = press
+    text = mapping.read_text().replace('offset: 100.0', 'offset: 90.0')
+    (tmp_path / 'map.yaml').write_text(text)
+    own = read_measurement(path, load_mapping(tmp_path / 'map.yaml'), False)
+    run = prepared(isa_ros.load('rig_linear'), 'ram', own)
+    assert run.configuration.actuator('ram').initial_position == pytest.approx(0.04, abs=2e-5)
+    assert run.configuration.actuator('ram').beyond_range == 'limit'
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        simulated = played(run, 'ram', own, 0.2)['position']
+    assert simulated.values[-1] > 0.05 and len(simulated.t) == 201
+
+
+def test_a_command_of_a_mode_is_given_in_that_mode(
+        press: tuple[Path, Path], tmp_path: Path) -> None:
+    path, mapping = press
+    (tmp_path / 'map.yaml').write_text(mapping.read_text().replace(
+        'position_command: {column: cmd, unit: mm}',
+        'force_command: {column: cmd, unit: N, offset: 850}'))
+    own = read_measurement(path, load_mapping(tmp_path / 'map.yaml'), False)
+    run = prepared(isa_ros.load('rig_linear'), 'ram', own)
+    assert run.configuration.actuator('ram').mode == 'force'
+    force = played(run, 'ram', own, 0.2)['force'].values
+    assert np.abs(force[50:100]).mean() > 300.0    # 900 N in all, less what moves 50 kg
+
+
+@pytest.mark.parametrize('signals, expected', [
+    ('position: {column: pos, unit: mm}', 'press.csv: has no command, so there is nothing to sim'),
+    ('position_command: {column: cmd, unit: mm}', 'has commands only, nothing to compare'),
+    ('force_command: {column: cmd, unit: N}\n  spool_command: {column: cmd, unit: mm}\n  '
+     'position: {column: pos, unit: mm}', 'has force_command and spool_command, must have one'),
+    ('velocity_command: {column: cmd, unit: mm/s}\n  position: {column: pos, unit: mm}',
+     'has velocity_command, must have one')])
+def test_what_cannot_be_simulated_is_refused(
+        press: tuple[Path, Path], tmp_path: Path, signals: str, expected: str) -> None:
+    (tmp_path / 'map.yaml').write_text(
+        f'time: {{column: t, unit: ms}}\nsignals:\n  {signals}\n')
+    with pytest.raises(ConfigError) as refused:
+        against(press[0], tmp_path / 'map.yaml', isa_ros.load('rig_linear'), [NONE])
+    assert expected in str(refused.value)
+
+
+def test_a_run_of_several_actuators_needs_a_name(press: tuple[Path, Path]) -> None:
+    with pytest.raises(ConfigError, match='the mapping lacks actuator, one of haa, hfe, kfe'):
+        against(*press, isa_ros.load('leg'), [NONE])
+
+
+def test_free_parameters_have_their_declared_bounds() -> None:
+    run = isa_ros.load('rig_linear')
+    [bulk] = free_of(run, 'ram', ['plant.oil.effective_bulk_modulus'])
+    assert (bulk.start, bulk.low, bulk.high, bulk.unit) == (7e8, 7e7, 2e9, 'Pa')
+    [given] = free_of(run, 'ram', ['plant.mechanics.backlash=0:1e-4'])
+    assert (given.start, given.low, given.high, given.size) == (0.0, 0.0, 1e-4, 2.5e-5)
+    assert [own.key for own in free_of(run, 'ram', [])] == [
+        'load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus']
+
+
+@pytest.mark.parametrize('key, expected', [
+    ('plant.friction.viscose', '--free plant.friction.viscose: is unknown; did you mean viscous'),
+    ('oil.bulk', '--free oil.bulk: is unknown'),
+    ('plant.mechanics.backlash', 'is 0, give bounds within its range: plant.mechanics.backlash='),
+    ('load.inertia=3', '--free load.inertia=3: must be KEY=LOW:HIGH'),
+    ('load.inertia=9:3', 'give bounds within its range'),
+    ('reu.position.kind', 'is unknown')])
+def test_a_key_that_cannot_be_free_is_refused(key: str, expected: str) -> None:
+    with pytest.raises(ConfigError) as refused:
+        free_of(isa_ros.load('rig_linear'), 'ram', [key])
+    assert expected in str(refused.value)
