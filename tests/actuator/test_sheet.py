@@ -7,6 +7,7 @@ from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import Held, Off
 import pytest
+from tests.actuator.hosed_cylinder import CHECK, COUNTERBALANCE, HOSES
 from tests.sheets import actuator_sheet, MODELS
 
 SHIPPED = [(model, preset, variant) for model in MODELS
@@ -79,3 +80,15 @@ def test_the_current_s_loop_is_closed_exactly_once():
                   changed(explicit, 'plant', 'coil', plain.plant.coil)):
         with pytest.raises(ConfigError, match='lead_lag needs an explicit coil'):
             refuse_wiring(sheet)
+
+
+@pytest.mark.parametrize('held', [
+    {}, {'holding_a': COUNTERBALANCE}, {'holding_b': CHECK},
+    {'holding_a': CHECK, 'holding_b': COUNTERBALANCE}], ids=['none', 'a', 'b', 'both'])
+def test_a_stop_on_load_holding_valves_has_no_position_loop(held):
+    """R16: K and K_i are 0 with one of them, and only then."""
+    sheet = actuator_sheet('cylinder')
+    flow = actuator_record(replace(sheet, plant=replace(sheet.plant, hoses=HOSES, **held)), 0)[
+        'reu']['rules']['flow'][0]
+    assert (flow['hold'] == 0.0) is (flow['integral'] == 0.0) is bool(held)
+    assert flow['damping'] > 0.0

@@ -343,7 +343,7 @@ def test_a_load_is_a_set_a_force_and_values(extended: Extended) -> None:
 def test_a_part_of_the_plant_is_a_file_and_its_term(extended: Extended) -> None:
     """Buffers: they lessen the impact at the ends; the energy account closes over it."""
     copied = extended.copied
-    assert len(extended.part) == 2
+    assert len(extended.part) == 3
     assert copied.python(_HITS) == 'True True True\n'
     assert 'plant.buffer.damping ' in copied.isa('params', 'isa_v5')
 
