@@ -8,7 +8,9 @@ import subprocess
 import sys
 import threading
 
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.integration import state_name, STATE_SIZE
+from isa_ros.config.assembly import timing_of
 from isa_ros.core.device import MODES
 from isa_ros.core.elf import symbols
 from isa_ros.core.fields import units_of
@@ -164,6 +166,7 @@ def test_what_it_is(loaded, own):
     assert about.digest.decode() == own.actuator.digest
     assert (about.step_ns, about.is_rotary, about.has_own_load) == (1_000_000, 0, 0)
     assert list(about.start) == [0.05, 0.0, 20.7e6, 0.0]
+    assert Instance(loaded).save().tobytes()[-16:] == about.digest
 
 
 class Texts(ctypes.Structure):
@@ -266,6 +269,13 @@ def test_no_instance(loaded):
     assert loaded.call('time_ns', None, result=ctypes.c_int64) == 0
 
 
+def started(chosen, *start):
+    """Return the actuator in Python, started."""
+    actuator = SmartActuator(chosen.config, timing_of(chosen.run))
+    actuator.start(*start)
+    return actuator
+
+
 def test_starts(loaded):
     instance = Instance(loaded)
     before = instance.save().tobytes()
@@ -279,11 +289,7 @@ def test_starts(loaded):
     assert instance.save().tobytes() == before
     assert instance.start(0.1, 0.0, 1e5, 1e5) == 0 and instance.start(0.0, 0.0, 2e7, 0.0) == 0
     assert instance.start(0.02, 500.0, 18e6, 2e5) == 0
-    from isa_ros.actuator.actuator import SmartActuator
-    from isa_ros.config.assembly import timing_of
-    chosen = choose('isa_v5', {'reu.force.kp': 9.5e-08})
-    expected = SmartActuator(chosen.config, timing_of(chosen.run))
-    expected.start(0.02, 500.0, 18e6, 2e5)
+    expected = started(choose('isa_v5', {'reu.force.kp': 9.5e-08}), 0.02, 500.0, 18e6, 2e5)
     assert instance.save().tobytes()[:-16] == expected.snapshot()
     assert instance.sample.tobytes() == expected.sample.tobytes()
     given = port(x0=0.02, supply_pressure=18e6, return_pressure=2e5)
@@ -296,9 +302,11 @@ def test_only_a_load_of_its_own_needs_no_port(loaded, tmp_path):
     instance = Instance(loaded)
     before = bytes(instance.memory)
     assert instance.tick() == NO_INSTANCE and bytes(instance.memory) == before
-    own = Loaded(written(exported(choose('rig_linear')), tmp_path), 'isa_ram')
+    chosen = choose('rig_linear')
+    own = Loaded(written(exported(chosen), tmp_path), 'isa_ram')
     ram, other = Instance(own), Instance(own)
     assert ram.start(0.04, 0.0, 17e6, 3e5) == other.start(0.04, 0.0, 17e6, 3e5) == 0
+    assert ram.save().tobytes()[:-16] == started(chosen, 0.04, 0.0, 17e6, 3e5).snapshot()
     for _ in range(3):
         assert ram.tick() == other.tick(port(x0=9.0, supply_pressure=17e6,
                                              return_pressure=3e5)) == 0
@@ -372,6 +380,13 @@ def test_setpoints_beyond_their_range_are_limited(limiting):
     assert instance.tick(port(), command(HAS_SETPOINT, position=np.inf)) == NOT_FINITE
 
 
+def test_the_ends_of_a_range_are_in_it(loaded):
+    instance = Instance(loaded)
+    for position in (0.1, 0.0):
+        assert instance.tick(port(), command(HAS_SETPOINT, position=position)) == 0
+        assert instance.applied['position'] == position
+
+
 @pytest.mark.parametrize('field', LOAD_PORT.names)
 def test_ports_are_finite(loaded, field):
     instance = Instance(loaded)
@@ -408,8 +423,6 @@ def test_a_divergence_stays_until_the_next_start(loaded):
 
 def test_the_state_that_diverged_is_named(loaded, own):
     """As the error of Python names it."""
-    from isa_ros.actuator.actuator import SmartActuator
-    from isa_ros.config.assembly import timing_of
     from isa_ros.errors import SimulationDiverged
     actuator = SmartActuator(own.chosen.config, timing_of(own.chosen.run))
     with pytest.raises(SimulationDiverged) as error:
@@ -451,8 +464,6 @@ def test_states_that_are_refused(loaded):
 
 def test_altered_states_are_refused_as_in_python(loaded, own):
     """A number of a state at a time; what is taken is taken by both."""
-    from isa_ros.actuator.actuator import SmartActuator
-    from isa_ros.config.assembly import timing_of
     actuator = SmartActuator(own.chosen.config, timing_of(own.chosen.run))
     instance = Instance(loaded)
     for k in range(20):
