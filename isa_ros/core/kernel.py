@@ -5,7 +5,7 @@ Importing a kernel takes no compiler: its machine code is looked up at the first
 libraries of kernels (`kernel_library`), and only a kernel that none of them has is compiled.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, cached_property, update_wrapper
 import os
 from typing import Any, NamedTuple, TypeVar
@@ -42,7 +42,7 @@ class Kernel:
         self.py_func, self.targetoptions = function, options
         self.directory = CACHE
         """Where the compiler keeps it."""
-        self._calls: dict[tuple[Kind, ...], Callable[[Sequence[Any]], Any]] = {}
+        self._calls: dict[tuple[Kind, ...], Callable[[tuple[Any, ...]], Any]] = {}
         self._call: Callable[..., Any] = self._from_library
         update_wrapper(self, function)
 
@@ -74,7 +74,7 @@ class Kernel:
             return self.compiled(*arguments, **named)
         return call(arguments)
 
-    def _found(self, kinds: tuple[Kind, ...]) -> Callable[[Sequence[Any]], Any] | None:
+    def _found(self, kinds: tuple[Kind, ...]) -> Callable[[tuple[Any, ...]], Any] | None:
         entry = Entry(self, TupleKind(tuple, kinds), is_called=True)
         call = call_in_library(entry)
         if call is not None:

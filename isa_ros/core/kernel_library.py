@@ -6,7 +6,7 @@ digest of both: what was edited since is not found, and compiled. `scripts/make_
 those that are shipped, one for each kind of processor.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 import ctypes
 from functools import cache
 import hashlib
@@ -28,6 +28,7 @@ SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRAC
 """Of numba, that change machine code: with one in the environment all kernels are compiled."""
 _RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
 _MAKERS = ('compiler', 'kinds', 'object_runtime', 'objects', 'words')
+_ROOM = (0,) * RESULT_WORDS
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))
 """Flags of a processor whose machine code may be that of x86-64-v3, as Linux names them."""
@@ -49,10 +50,9 @@ class Call:
     def __init__(self, address: int, result: Kind | None) -> None:
         self._called, self._result = _CALLED(address), result
 
-    def __call__(self, arguments: Sequence[Any]) -> Any:
+    def __call__(self, arguments: tuple[Any, ...]) -> Any:
         """Run it and return what the kernel returns."""
-        words = [0] * RESULT_WORDS
-        words.extend(words_of(tuple(arguments)))
+        words = (*_ROOM, *words_of(arguments))
         table = (ctypes.c_int64 * len(words))(*words)
         self._called(table)
         return None if self._result is None else value_of(self._result, iter(table))
@@ -132,7 +132,7 @@ def _address_of(library: ctypes.CDLL, symbol: str) -> int:
     return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
 
 
-def call_in_library(entry: Named) -> Callable[[Sequence[Any]], Any] | None:
+def call_in_library(entry: Named) -> Callable[[tuple[Any, ...]], Any] | None:
     """Return what calls an entry's machine code with its arguments, None if no library has it."""
     found = _found(entry)
     if found is None:

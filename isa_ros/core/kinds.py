@@ -18,7 +18,6 @@ RESULT_WORDS = 32
 """Words in front of those of arguments, for what a kernel returns."""
 _WORD, _FLOAT = struct.Struct('q'), struct.Struct('d')
 _LARGEST = 2 ** 63
-_NUMBERS = {float: np.dtype(np.float64), int: np.dtype(np.int64), bool: np.dtype(np.bool_)}
 
 
 class UnknownKind(Exception):
@@ -55,11 +54,12 @@ class TupleKind(NamedTuple):
 
 
 Kind = ArrayKind | NumberKind | RecordKind | TupleKind
+_NUMBERS = {own: NumberKind(np.dtype(own)) for own in (float, int, bool)}
 
 
 def kind_of(value: Any) -> Kind:
     """
-    Return the kind of a value.
+    Return the kind of a value; the most frequent ones come first.
 
     Raises
     ------
@@ -67,19 +67,23 @@ def kind_of(value: Any) -> Kind:
         It has none.
 
     """
-    if isinstance(value, np.ndarray):
+    number = _NUMBERS.get(type(value))
+    if number is not None:
+        if -_LARGEST <= value < _LARGEST:
+            return number
+    elif isinstance(value, np.void):
+        return _of_record(value.dtype)
+    elif isinstance(value, np.ndarray):
         flags = value.flags
         return ArrayKind(value.dtype, value.ndim, not flags.c_contiguous, flags.writeable)
-    number = _NUMBERS.get(type(value))
-    if number is not None and -_LARGEST <= value < _LARGEST:
-        return NumberKind(number)
-    if isinstance(value, np.void):
-        return RecordKind(value.dtype)
-    if isinstance(value, tuple):
+    elif isinstance(value, tuple):
         return TupleKind(type(value), tuple(map(kind_of, value)))
-    if isinstance(value, np.number | np.bool_) and value.dtype.kind in 'biuf':
+    elif isinstance(value, np.number | np.bool_) and value.dtype.kind in 'biuf':
         return NumberKind(value.dtype)
     raise UnknownKind(type(value).__name__)
+
+
+_of_record = cache(RecordKind)
 
 
 @cache
@@ -91,22 +95,18 @@ def kind_text(kind: Kind) -> str:
     return f'{type(kind).__name__} {dtype_text(kind.dtype)}{rest}'
 
 
-def words_of(value: Any) -> Iterator[int]:
-    """Yield the words of a value that has a kind."""
+def words_of(value: Any) -> list[int]:
+    """Return the words of a value that has a kind."""
+    if isinstance(value, float):    # numpy's too
+        return [*_WORD.unpack(_FLOAT.pack(value))]
+    if isinstance(value, np.void):
+        return [value.__array_interface__['data'][0]]
     if isinstance(value, np.ndarray):
-        yield value.ctypes.data
-        yield from value.shape
-        if not value.flags.c_contiguous:
-            yield from value.strides
-    elif isinstance(value, np.void):
-        yield value.__array_interface__['data'][0]
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from words_of(part)
-    elif isinstance(value, float | np.floating):
-        yield from _WORD.unpack(_FLOAT.pack(value))
-    else:
-        yield int(value)
+        words = [value.ctypes.data, *value.shape]
+        return words if value.flags.c_contiguous else [*words, *value.strides]
+    if isinstance(value, tuple):
+        return [word for part in value for word in words_of(part)]
+    return [*_WORD.unpack(_FLOAT.pack(value))] if isinstance(value, np.floating) else [int(value)]
 
 
 def value_of(kind: Kind, words: Iterator[int]) -> Any:
