@@ -46,6 +46,13 @@ def test_a_leg_asks_for_all_that_its_run_needs():
     assert len({wanted.symbol for wanted in found}) == len(found)
 
 
+@pytest.mark.slow
+def test_controllers_of_scenarios_ask_for_their_kernels():
+    """The trot swings its feet after half a second."""
+    names = {wanted.name for wanted in rehearse('quadruped.yaml')}
+    assert {'update_legs', 'share_wrench', 'limit_forces', 'swing_feet'} <= names
+
+
 def test_objects_of_an_entry(alone):
     wanted = alone['oil_stiffness']
     made = make(wanted, list(TARGETS))
