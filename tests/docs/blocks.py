@@ -14,6 +14,7 @@ import io
 import os
 from pathlib import Path
 import re
+import signal
 import subprocess
 import sys
 from typing import NamedTuple
@@ -82,13 +83,25 @@ def _result(block: Block, folder: Path, names: dict[str, object]) -> str | None:
 
 
 def _of_shell(block: Block, folder: Path) -> str:
-    ended = subprocess.run(
-        ['bash', '-euo', 'pipefail', '-c', block.text], cwd=folder, text=True,
-        stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT_S, env={
-            **os.environ, 'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder / 'log'),
-            'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'})
-    assert ended.returncode == 0, f'line {block.line}: {ended.stdout}{ended.stderr}'
-    return ended.stdout
+    """Return what the commands print; what they leave in the background is ended."""
+    out = folder / 'printed.txt'    # not a pipe, which a process in the background would hold
+    with out.open('w+') as printed:
+        shell = subprocess.Popen(
+            ['bash', '-euo', 'pipefail', '-c', block.text], cwd=folder, start_new_session=True,
+            stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.PIPE, text=True, env={
+                **os.environ, 'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder / 'log'),
+                'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'})
+        try:
+            code = shell.wait(TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            code = None
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(shell.pid, signal.SIGKILL)
+        errors = shell.communicate()[1]
+    assert code is not None, f'line {block.line}: not finished after {TIMEOUT_S:g} s'
+    text = out.read_text()
+    assert code == 0, f'line {block.line}: {text}{errors}'
+    return text
 
 
 def _compare(block: Block, printed: str) -> None:

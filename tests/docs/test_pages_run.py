@@ -1,8 +1,10 @@
 """Every command and code block of these pages can be run as printed, with what it prints."""
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from tests.docs import blocks
 from tests.docs.blocks import blocks_of, run
 from tests.ros.domains import held_domain
 
@@ -37,6 +39,20 @@ def test_an_output_that_is_not_printed_is_noticed(tmp_path: Path) -> None:
 def test_what_fails_or_cannot_be_run_is_noticed(page: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(AssertionError, match=message):
         run(page, tmp_path)
+
+
+def test_what_a_block_leaves_behind_is_ended(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where it fails, or takes too long."""
+    page = '```bash\nsleep 300 &\necho $! > child\n%s\n```\n'
+    monkeypatch.setattr(blocks, 'TIMEOUT_S', 2.0)
+    for end, message in (('true', ''), ('false', 'line 2: '), (
+            'sleep 300', 'line 2: not finished after 2 s')):
+        with pytest.raises(AssertionError, match=message) if message else nullcontext():
+            run(page % end, tmp_path)
+        child = int((tmp_path / 'child').read_text())
+        assert not Path(f'/proc/{child}').exists() or (
+            Path(f'/proc/{child}/stat').read_text().split()[2] in 'ZX')
 
 
 def test_files_are_written_and_python_stands_beside_them(tmp_path: Path) -> None:
