@@ -6,6 +6,7 @@ from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.plant.hose import LumpedHoses
+from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.wiring import active
 from isa_ros.text.table import digits
 import numpy as np
@@ -44,9 +45,16 @@ def _followed(actuator: ActuatorConfig, signals: Signals, field: str, title: str
     error = error_of(signals, actuator.name, field)
     found = None if error is None else tracking_error(error)
     return Panel(title, unit, scale, [measured, reference], '' if found is None else (
-        f'The measurement is to follow the reference: it is off by '
+        f'{_aim(actuator, field)}: it is off by '
         f'{digits(found.rms / scale, 3)} {unit} rms, at most {digits(found.most / scale, 3)} '
         f'{unit}, at t = {found.t_s:.3f} s.'))
+
+
+def _aim(actuator: ActuatorConfig, field: str) -> str:
+    """Return what a loop does with the measurement."""
+    if field == 'position' and isinstance(actuator.sheet.reu.position, Impedance):
+        return 'An impedance pulls the measurement to the reference as a spring does'
+    return 'The measurement is to follow the reference'
 
 
 def _is_followed(actuator: ActuatorConfig, field: str) -> bool:

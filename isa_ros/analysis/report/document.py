@@ -14,11 +14,17 @@ from typing import Any, NamedTuple
 from isa_ros.analysis.report.encoding import Encoder
 from isa_ros.analysis.report.marks import Marks
 from isa_ros.analysis.report.panels import Curve, Group, Panel
-from isa_ros.text.markup import escaped, json_in_page
+from isa_ros.analysis.report.thinning import Thinning, thinning_for
+from isa_ros.text.markup import escaped, json_in_page, tag
 from isa_ros.vendor import uplot
 
 GENERATOR = '<meta name="generator" content="isa_ros">'
 """By which a report is known, so that only reports are replaced."""
+
+MOST_SAMPLES = 60_000_000
+"""Of a page: about 40 MB of it, and as much memory of a browser as 12 actuators in 12 minutes."""
+_THINNED = ('Too many samples for a page: of each signal there are the least and the greatest '
+            'value in each of {0} parts of the run, and all samples around events.')
 
 _BROWSER = Path(__file__).parent / 'browser'
 _SCRIPTS = ('signals.js', 'charts.js', 'page.js')
@@ -58,7 +64,8 @@ class Span(NamedTuple):
 
 def document(title: str, head: str, shown: Sequence[Shown], span: Span) -> str:
     """Return a page; ``head`` is markup that stands above the diagrams."""
-    encoder = Encoder()
+    thinning = thinning_of(shown)
+    encoder = Encoder(thinning)
     groups = [_group(own, encoder, is_open=k < _OPEN) for k, own in enumerate(shown)]
     meta = {**span._asdict(), 'grids': encoder.grids, 'groups': groups}
     drawn_by = uplot()
@@ -69,8 +76,17 @@ def document(title: str, head: str, shown: Sequence[Shown], span: Span) -> str:
     policy = (f"default-src 'none'; script-src {_digest(script)}; style-src {_digest(style)}; "
               "img-src data:; base-uri 'none'; form-action 'none'")
     return _PAGE.format(
-        generator=GENERATOR, policy=policy, title=escaped(title), style=style, head=head,
+        generator=GENERATOR, policy=policy, title=escaped(title), style=style,
+        head=head + ('' if thinning is None else tag('p', _THINNED.format(*thinning), 'mut')),
         meta=json_in_page(meta), data=encoder.text(), script=script)
+
+
+def thinning_of(shown: Sequence[Shown]) -> Thinning | None:
+    """Return how the samples of a page are thinned; None: it has all of them."""
+    lengths = {id(curve.signal.values): len(curve.signal.t)
+               for own in shown for panel in own.group.panels for curve in panel.curves}
+    events = sorted({event.t_s for own in shown for event in own.marks.events})
+    return thinning_for(sum(lengths.values()), len(lengths), MOST_SAMPLES, events)
 
 
 def _digest(text: str) -> str:

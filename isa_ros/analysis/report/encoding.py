@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import zlib
 
 from isa_ros.analysis.report.panels import extent, Floats
+from isa_ros.analysis.report.thinning import Thinning
 from isa_ros.analysis.signals.signals import Signal
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +34,14 @@ class EncodedSignal(NamedTuple):
 
 
 class Encoder:
-    """Collects signals; each is stored once, however often it is drawn."""
+    """
+    Collects signals; each is stored once, however often it is drawn.
 
-    def __init__(self) -> None:
+    ``thinning`` chooses the samples of signals that are too many for a page.
+    """
+
+    def __init__(self, thinning: Thinning | None = None) -> None:
+        self._thinning = thinning
         self.grids: list[dict[str, Any]] = []
         """Times of signals: t0, step and n, all s; and offset where they are not even."""
         self._known: dict[tuple[int, ...], EncodedSignal] = {}
@@ -51,6 +57,9 @@ class Encoder:
         key = place, len(signal.values), *signal.values.strides, id(signal.t)
         if key not in self._known:
             self._kept.append(signal)
+            if self._thinning is not None:
+                signal = self._thinning.thinned(signal)
+                self._kept.append(signal)
             low, high = extent(signal.values)
             if np.isnan(low):
                 low = high = 0.0

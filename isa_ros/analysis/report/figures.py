@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from isa_ros.analysis.report.marks import Marks
-from isa_ros.analysis.report.panels import Floats, Group
+from isa_ros.analysis.report.panels import Group
+from isa_ros.analysis.report.thinning import extreme_places
 from isa_ros.run.events import TRIP
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-import numpy as np
 
 _TRIP, _OTHER = 'black', 'gray'     # no curve has them
 _MOST_MARKS = 20
@@ -19,8 +19,9 @@ def figure_of(group: Group, marks: Marks) -> Figure:
     figure, axes = stack(len(group.panels), group.title, 1.2 + 1.85 * len(group.panels))
     for panel, ax in zip(group.panels, axes):
         for k, curve in enumerate(panel.curves):
-            t, values = thinned(curve.signal.t, curve.signal.values)
-            ax.plot(t, values / panel.scale, label=curve.label, color=f'C{k % 10}',
+            at = extreme_places(curve.signal.values, _PARTS)
+            ax.plot(curve.signal.t[at], curve.signal.values[at] / panel.scale,
+                    label=curve.label, color=f'C{k % 10}',
                     linestyle='--' if curve.is_reference else '-',
                     linewidth=1.0 if curve.is_reference else 1.2)
         ax.set_ylabel(panel.label)
@@ -39,20 +40,6 @@ def _mark(ax: Axes, marks: Marks, *, is_named: bool) -> None:
                 event.what.partition(',')[0], (event.t_s, 1.0),
                 xycoords=('data', 'axes fraction'), fontsize=7, rotation=90, va='top',
                 ha='right', color=_TRIP)
-
-
-def thinned(t: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return times and values, of very many the least and greatest of each part, in order."""
-    size = -(-len(t) // _PARTS)
-    if size <= 2:
-        return t, values
-    whole = len(t) // size * size
-    rows = values[:whole].reshape(-1, size)
-    filled = np.where(np.isnan(rows), np.inf, rows), np.where(np.isnan(rows), -np.inf, rows)
-    kept = np.sort([filled[0].argmin(axis=1), filled[1].argmax(axis=1)], axis=0).T
-    at = np.concatenate([(kept + size * np.arange(len(rows))[:, None]).ravel(),
-                         np.arange(whole, len(t))])
-    return t[at], values[at]
 
 
 def stack(rows: int, title: str, height: float) -> tuple[Figure, tuple[Axes, ...]]:

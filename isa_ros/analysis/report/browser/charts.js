@@ -1,7 +1,7 @@
 'use strict';
 // One diagram of the page: a uPlot chart, its legend with exact samples, marks of events.
 
-const HEIGHT = 170, LEFT = 64, RIGHT = 12, LEAST_SAMPLES = 20;
+const HEIGHT = 170, LEFT = 64, RIGHT = 24, LEAST_SAMPLES = 20;
 const style = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const element = (parent, tag, className, text) => {
   const made = parent.appendChild(document.createElement(tag));
