@@ -52,6 +52,7 @@ setup(
         shared('config', '*.yaml'),
         shared('config/bad', '*.yaml'),
         shared('config/controllers', '*.yaml'),
+        shared('config/measurements', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
         shared('launch', '*.launch.py'),
         shared('rviz', '*.rviz'),

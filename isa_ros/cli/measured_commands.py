@@ -65,8 +65,9 @@ def compare(options: Namespace) -> bool:
     """Compare the signals of two measurements, or of one and a bag."""
     from isa_ros.analysis.measured.beside import fits_of, fits_text, fits_tree
     from isa_ros.text.json_file import write_wanted
-    if options.tolerance:
-        raise ConfigError('--tolerance is not used with --mapping')
+    for option in ('tolerance', 'report'):
+        if getattr(options, option):
+            raise ConfigError(f'--{option} is not used with --mapping')
     found = fits_of(options.expected, options.actual, options.mapping)
     print(fits_text(found))
     write_wanted(fits_tree(found), options.json)

@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.analysis.identification.identification import Identified, identify
 from isa_ros.analysis.measured.against import actuator_of, fit_cells, FIT_HEADER
 from isa_ros.analysis.measured.fit import Fit, fit
-from isa_ros.analysis.measured.mapping import load_mapping
+from isa_ros.analysis.measured.mapping import load_mapping, MeasurementMapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.recording import Recording, SLOWEST_STEP
@@ -26,13 +26,12 @@ NEEDED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool')
 
 
 def fits_of(
-        expected: Path, actual: Path, mappings: Sequence[Path], actuator: str | None = None,
-        is_rotary: bool = False) -> dict[str, Fit | str]:
+        expected: Path, actual: Path, mappings: Sequence[Path]) -> dict[str, Fit | str]:
     """
     Return how the signals of one measurement follow those of another, by quantity.
 
     The first mapping is that of ``expected``, the last one that of ``actual``. A bag of isa_ros
-    needs none: its signals are those of ``actuator``, or of the mapping's.
+    needs none: its signals are those of the mapping's actuator, or of its only one.
 
     Raises
     ------
@@ -40,9 +39,9 @@ def fits_of(
         A measurement cannot be read, or they have no quantity in common.
 
     """
-    name = next((own.actuator for own in map(load_mapping, mappings) if own.actuator), actuator)
-    first = _signals(expected, mappings[0], name, is_rotary)
-    second = _signals(actual, mappings[-1], name, is_rotary)
+    own = [load_mapping(path) for path in mappings]
+    name = next((each.actuator for each in own if each.actuator), None)
+    first, second = _signals(expected, own[0], name), _signals(actual, own[-1], name)
     common = [quantity for quantity in first if quantity in second]
     if not common:
         raise ConfigError(f'{expected} has {", ".join(first)}, {actual} has {", ".join(second)}: '
@@ -57,7 +56,7 @@ def fits_of(
 
 
 def _signals(
-        path: Path, mapping: Path, name: str | None, is_rotary: bool) -> Mapping[str, Signal]:
+        path: Path, mapping: MeasurementMapping, name: str | None) -> Mapping[str, Signal]:
     """Return the signals of a measurement, or of a bag of isa_ros, by quantity."""
     if (path.is_dir() or path.suffix == '.mcap') and _is_own(path):
         signals = read_signals(path, needs_values=False)
@@ -68,7 +67,7 @@ def _signals(
         return {quantity: signals.over_time(f'{own}.{row.field}')
                 for quantity, row in QUANTITIES.items()
                 if row.field and f'{own}.{row.field}' in signals}
-    return read_measurement(path, load_mapping(mapping), is_rotary).signals
+    return read_measurement(path, mapping, mapping.is_rotary).signals
 
 
 def _is_own(path: Path) -> bool:

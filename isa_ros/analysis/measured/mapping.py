@@ -24,6 +24,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 
+_ROTARY_UNITS = ('rad', 'deg', 'rad/s', 'Nm')
 _TOP = ('actuator', 'time', 'skip_lines', 'clock_ppm', 'signals')
 _TIME = ('column', 'unit', 'rate_hz')
 _SIGNAL = ('column', 'topic', 'field', 'unit', 'sign', 'scale', 'offset', 'delay_ms')
@@ -65,6 +66,11 @@ class MeasurementMapping(NamedTuple):
     """Relative error of the clock: 4e-5 for one that is 40 ppm fast."""
     signals: Mapping[str, MappedSignal]
     """By quantity."""
+
+    @property
+    def is_rotary(self) -> bool:
+        """Return whether its units are those of a rotary actuator."""
+        return any(own.unit in _ROTARY_UNITS for own in self.signals.values())
 
 
 def load_mapping(path: Path) -> MeasurementMapping:

@@ -44,6 +44,7 @@ def test_a_bag_is_read_by_topic_and_field(
 
 @pytest.mark.parametrize('arguments, expected', [
     (['--tolerance', 'x.yaml'], '--tolerance is not used with --mapping'),
+    (['--report'], '--report is not used with --mapping'),
     ([], 'nothing in common')])
 def test_a_comparison_that_cannot_be_made_is_2(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str],
@@ -57,6 +58,21 @@ def test_a_comparison_that_cannot_be_made_is_2(
     assert main(['compare', csv, csv, '--mapping', str(tmp_path / 'a.yaml'), '--mapping',
                  str(tmp_path / 'b.yaml'), *arguments]) == 2
     assert expected in capsys.readouterr().err
+
+
+def test_two_rotary_records_are_compared(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By the units of the mapping: twice the angle, and 3 ms later."""
+    t = np.arange(400)
+    x = np.sin(0.05 * t) + np.sin(0.021 * t)
+    late = 2.0 * (np.sin(0.05 * (t - 3)) + np.sin(0.021 * (t - 3)))
+    for name, values in (('a', x), ('b', late)):
+        np.savetxt(tmp_path / f'{name}.csv', values)
+    (tmp_path / 'm.yaml').write_text(
+        'time: {rate_hz: 1000}\nsignals: {position: {column: 1, unit: deg}}\n')
+    assert main(['compare', str(tmp_path / 'a.csv'), str(tmp_path / 'b.csv'), '--mapping',
+                 str(tmp_path / 'm.yaml')]) == 0
+    assert capsys.readouterr().out.splitlines()[2].split()[2:5] == ['3.00', 'ms', '1.999']
 
 
 @pytest.mark.slow
