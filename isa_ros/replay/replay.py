@@ -6,10 +6,12 @@ in it, each at the tick at which it took effect; the scenario is provenance only
 needed.
 """
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
+import math
 from typing import NamedTuple
 
 from isa_ros.bag.provenance import versions_of
@@ -28,7 +30,7 @@ from isa_ros.replay.releases import release_that_replays
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import LocalRun
-from isa_ros.run.output import Recorder
+from isa_ros.run.recorders import Recorder
 from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.surroundings.kept_ports import (
     FORMAT, GivenBody, LOAD_PORT_TOPIC, port_of_message)
@@ -125,8 +127,10 @@ class Rerun:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
         self._inputs = recorded_inputs(bag, self._run)
+        self._commanded = sorted(self._inputs.commands)
         self._source = ScheduledSource(
-            self._fill, _changes(self._inputs, self._run), recorded_events(bag))
+            self._fill, _changes(self._inputs, self._run), recorded_events(bag),
+            self._next_command)
         self._state = _recorded_state(bag, self._run)
         self.external_bodies = [_not_simulated(body, bag.provenance.bodies)
                                 for body in self._run.bodies if body.is_given]
@@ -144,6 +148,10 @@ class Rerun:
                 has_end=self._inputs.has_end)
         except Interrupted:
             pass  # should_stop was true before the end
+
+    def _next_command(self, tick: int) -> float:
+        k = bisect_left(self._commanded, tick)
+        return self._commanded[k] if k < len(self._commanded) else math.inf
 
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._inputs.commands.get(tick, ()):

@@ -8,7 +8,8 @@ from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.output import packer_of, Recorder, RunOutput
+from isa_ros.run.output import packer_of, RunOutput
+from isa_ros.run.recorders import Recorder
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation

@@ -1,49 +1,19 @@
 """Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
 from collections.abc import Collection, Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol
 
-from isa_ros.bag.message_chunk import Room
-from isa_ros.bag.packed import Layout
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.bound import nothing, Part
 from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
+from isa_ros.run.buffered import quiet
 from isa_ros.run.packing import Messages, Names, Packer
+from isa_ros.run.recorders import Recorder
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
 import numpy as np
 from numpy.typing import NDArray
-
-
-class Recorder(Protocol):
-    """Receives every sample of a run, in order of time."""
-
-    def write_tick(
-            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        """
-        Append one sample: (index into the sorted topics, CDR) with ascending index.
-
-        Raises
-        ------
-        RunError
-            The sample cannot be written, for example because the disk is full.
-
-        """
-        ...
-
-
-@runtime_checkable
-class QuietRecorder(Recorder, Protocol):
-    """A recorder that gives room for the records of ticks of one layout."""
-
-    def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
-        """Return room for ticks from ``t_ns`` on; as `isa_ros.bag.writer.BagWriter`."""
-        ...
-
-    def close_stretch(self, n_ticks: int) -> None:
-        """Record the first ticks that were written since `open_stretch`, possibly none."""
-        ...
 
 
 class Outlet(Protocol):
@@ -97,7 +67,7 @@ class RunOutput(RowSink):
             outlets: Outlets = Outlets(), *, has_end: bool = True) -> None:
         self._packer = packer
         self._step_ns = step_ns
-        self._recorder = recorder
+        self._recorder = None if recorder is None else quiet(recorder)
         self._outlets = outlets
         self._has_end = has_end
         self._surroundings = packer.surroundings
@@ -115,14 +85,12 @@ class RunOutput(RowSink):
         of_all = self._outlets.clock, self._outlets.surroundings, *self._outlets.actuators
         if any(outlet.has_subscribers() for outlet in of_all) or self._events:
             return 0
-        if self._recorder is not None and not isinstance(self._recorder, QuietRecorder):
-            return 0
         return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)
 
     def begin_quiet(
             self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
         """Record what is packed; return what packs and records, as far as there is room."""
-        if not isinstance(self._recorder, QuietRecorder):
+        if self._recorder is None:
             return most, ()
         self.record()
         layout = self._packer.quiet_layout(self._step_ns)
@@ -132,7 +100,7 @@ class RunOutput(RowSink):
 
     def end_quiet(self, tick: int, n_ticks: int) -> None:
         """Record what was written."""
-        if isinstance(self._recorder, QuietRecorder):
+        if self._recorder is not None:
             self._recorder.close_stretch(n_ticks)
             if n_ticks:
                 self._recorded = tick + n_ticks

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from isa_ros.bag.packed import Packed
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.core.topic import Topic
-from isa_ros.run.output import Recorder
+from isa_ros.run.recorders import Recorder
 
 
 class Thinning:

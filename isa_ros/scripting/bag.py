@@ -6,8 +6,9 @@ from pathlib import Path
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_in_form
 from isa_ros.core.topic import Topic
-from isa_ros.run.output import packer_of, Recorder, RunOutput
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.provenance import provenance_of
+from isa_ros.run.recorders import Recorder
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log
