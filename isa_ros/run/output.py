@@ -74,6 +74,7 @@ class RunOutput(RowSink):
         self._events: list[bytes] = []
         self._unrecorded: int | None = None
         self._recorded = 0
+        self._applied = b''
 
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
@@ -87,13 +88,18 @@ class RunOutput(RowSink):
             return 0
         return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)
 
+    def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
+        """Return whether no publisher keeps them; they are recorded."""
+        self._applied = expected.tobytes()
+        return not (self._outlets.actuators and expected.any())
+
     def begin_quiet(
             self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
         """Record what is packed; return what packs and records, as far as there is room."""
         if self._recorder is None:
             return most, ()
         self.record()
-        layout = self._packer.quiet_layout(self._step_ns)
+        layout = self._packer.quiet_layout(self._step_ns, self._applied)
         room = self._recorder.open_stretch(layout, self._stamp(tick + 1), self._step_ns)
         recording = self._packer.recording(clock, layout, room)
         return min(most, room.n_ticks), (Part(recording, nothing),)

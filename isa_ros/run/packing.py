@@ -194,10 +194,14 @@ class Packer:
         ends = ((t_ns // period + 1) * period for period in self._rare_periods(step_ns).values())
         return min((-((t_ns - end) // step_ns) - 1 for end in ends), default=_MANY)
 
-    def quiet_layout(self, step_ns: int) -> Layout:
-        """Return the layout of a tick without commands, and without what few ticks have."""
-        return self._layout_of(bytes(len(self._kinds)), bytes(len(self._kinds)),
-                               frozenset(self._rare_periods(step_ns)))
+    def quiet_layout(self, step_ns: int, applied: bytes = b'') -> Layout:
+        """
+        Return the layout of a tick without what few ticks have.
+
+        ``applied``: for each actuator whether it has a command; b'': none has.
+        """
+        none = bytes(len(self._kinds))
+        return self._layout_of(applied or none, none, frozenset(self._rare_periods(step_ns)))
 
     def _rare_periods(self, step_ns: int) -> dict[str, int]:
         return {name: period for name, period in self._periods.items() if period > step_ns}

@@ -243,6 +243,14 @@ class RowSink:
         """
         return 0
 
+    def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
+        """
+        Return whether its kernels take ticks in which commands of some actuators are applied.
+
+        ``expected`` are these in the next quiet ticks, (n,).
+        """
+        return not expected.any()
+
     def begin_quiet(
             self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
         """

@@ -17,6 +17,8 @@ from isa_ros.core.bound import Bound, nothing, Part, Program
 from isa_ros.core.device import is_status_due
 from isa_ros.core.kernel import kernel
 from isa_ros.tick.exchange import Ends, Rows, RowSink
+from isa_ros.tick.planned import PlannedCommands
+from isa_ros.tick.source import Source
 import numpy as np
 
 
@@ -33,6 +35,8 @@ class Watched(NamedTuple):
     """`COMMAND` handed to a link, (n,)."""
     trip_times: np.ndarray
     """Of the last trip of each actuator before, s, (n,)."""
+    expected: np.ndarray
+    """Whether a command takes effect in the tick as planned, bool, (n,)."""
 
 
 @kernel
@@ -43,7 +47,7 @@ def watch(own):
     start_ns = end_ns - own.clock[1]
     for n in range(len(own.samples)):
         sample = own.samples[n]
-        if (own.applied[n].kinds != 0 or own.sent[n].kinds != 0
+        if ((own.applied[n].kinds != 0) != own.expected[n] or own.sent[n].kinds != 0
                 or sample.trip_time != own.trip_times[n]
                 or is_status_due(
                     sample.state_since, sample.age, sample.is_stale, end_ns, start_ns)):
@@ -77,27 +81,34 @@ class QuietTicks:
         self._rows = rows
         self._clock = np.array([0, step_ns], np.int64)
         self._trip_times = np.zeros(len(rows.samples))
-        watched = Watched(self._clock, rows.samples, rows.applied, rows.sent, self._trip_times)
+        self._plan = PlannedCommands(self._clock, rows.commands)
+        watched = Watched(self._clock, rows.samples, rows.applied, rows.sent, self._trip_times,
+                          self._plan.expected)
         self._tick = (*before, *ends.parts, *after, Part(Bound(watch, watched), nothing))
         self._place = len(before)
         self._program = Program(())
 
-    def run(self, tick: int, most: int, sinks: Sequence[RowSink]) -> tuple[int, Ended]:
+    def run(self, tick: int, most: int, sinks: Sequence[RowSink],
+            source: Source | None = None) -> tuple[int, Ended]:
         """
         Run up to ``most`` ticks after ``tick`` ones, as far as the sinks need no Python.
 
-        Returns how many the sinks have kept.
+        Their commands are those of a source, None: they have none. Returns how many ticks the
+        sinks have kept.
         """
+        self._plan.expected[:] = False
+        if source is not None:
+            most = self._plan.prepare(source, tick, most)
         for sink in sinks:
             most = min(most, sink.quiet_ticks(tick))
-            if not most:
+            if not (most and sink.takes_applied(self._plan.expected)):
                 return 0, Ended.FULL
         self._clock[0] = tick
         self._trip_times[:] = self._rows.samples['trip_time']
         self._rows.take_requests()
         self._rows.changes = {}
         self.ends.begin_quiet(tick)
-        parts = [*self._tick]
+        parts = [*self._tick] if source is None else [self._plan.part, *self._tick]
         for sink in sinks:
             most, own = sink.begin_quiet(tick, most, self._clock)
             parts += own
@@ -105,7 +116,8 @@ class QuietTicks:
         if bounds != self._program.parts:
             self._program = Program(bounds)
         done, place, found = self._program.run(most)
-        has_begun = self.ends.end_quiet(tick, done, place - self._place)
+        before = self._place + (source is not None)
+        has_begun = self.ends.end_quiet(tick, done, place - before)
         for sink in sinks:
             sink.end_quiet(tick, done)
         if place < 0:

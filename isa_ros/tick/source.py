@@ -79,8 +79,19 @@ class ScheduledSource:
         """Return the first tick from ``tick`` on with a command, a change or an event."""
         if self._next_command is None:
             return tick
+        return min(self._next_command(tick), self.planned_until(tick))
+
+    def planned_until(self, tick: int) -> float:
+        """
+        Return the first tick from ``tick`` on with a change or an event.
+
+        Commands of the ticks before may be asked for in advance. It is ``tick`` itself where that
+        is not known.
+        """
+        if self._next_command is None:
+            return tick
         k = bisect_left(self._others, tick)
-        return min(self._next_command(tick), *self._others[k:k + 1], math.inf)
+        return self._others[k] if k < len(self._others) else math.inf
 
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True."""

@@ -18,7 +18,7 @@ from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
 from isa_ros.tick.exchange import Ends, Rows, RowSink, Transport
 from isa_ros.tick.quiet import Ended, QuietTicks
-from isa_ros.tick.source import Source
+from isa_ros.tick.source import ScheduledSource, Source
 
 BEFORE_TICKS = 'between ticks'
 """Phase of the host time between two ticks."""
@@ -138,11 +138,14 @@ class TickLoop:
         """
         rows, tick = self.rows, self.ticks
         quiet = self._quiet_now()
-        most = min(until, self.source.quiet_until(tick)) - tick
+        most, planned = min(until, self.source.quiet_until(tick)) - tick, None
+        if most < 1 and isinstance(self.source, ScheduledSource):
+            planned = self.source
+            most = min(until, planned.planned_until(tick)) - tick
         if quiet is None or most < 1:
             return
         self._lap(BEFORE_TICKS)
-        kept, ended = quiet.run(tick, int(most), self.sinks)
+        kept, ended = quiet.run(tick, int(most), self.sinks, planned)
         self.ticks += kept + (ended is Ended.SEEN)
         if ended is not Ended.FULL:
             for sink in self.sinks:

@@ -16,6 +16,7 @@ from isa_ros.core.units import of_coordinate, quantity
 from isa_ros.text.table import digits
 from isa_ros.tick.exchange import Rows, RowSink
 import numpy as np
+from numpy.typing import NDArray
 
 _DIGITS = 4
 
@@ -166,6 +167,10 @@ class TripLog(RowSink):
     def quiet_ticks(self, tick: int) -> int:
         """Return as many as are asked for: no quiet tick has a trip."""
         return sys.maxsize
+
+    def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
+        """Return True: commands are not looked at."""
+        return True
 
     def end(self) -> None:
         """Keep the counts of the last rows."""

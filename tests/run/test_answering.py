@@ -170,6 +170,17 @@ def test_commands_are_kept_for_what_is_published_of_them(bench):
     assert k == 12 + MOST_KEPT and len(bench.loop.take_kept()) == MOST_KEPT
 
 
+def test_the_loop_ends_at_a_status_with_a_command_that_is_kept(bench):
+    """Both are of the tick that reaches a full second."""
+    for actuator in bench.actuator, bench.twin:
+        actuator.end_ticks(SECOND - 2 - actuator.t_ns // DEFAULT_TIMING.step_ns, 0)
+    bench.actuator.ticked.clock[0] = bench.actuator.t_ns // PLANT_STEP_NS
+    for k in range(SECOND - 2, SECOND + 2):
+        bench.coordinator.send(encoded(k, target=0.02))
+    assert bench.run(SECOND - 2, most=4, keeps=True) is Ended.ANSWERED
+    assert bench.loop.done == 2 and bench.loop.n_kept == 2
+
+
 def test_the_loop_ends_where_there_is_no_more_room_for_commands(bench):
     bench.loop._values[_KEPT] = MOST_KEPT - 2
     for k in range(7, 11):

@@ -25,7 +25,7 @@ from isa_ros.tick.trips import TripLog
 import numpy as np
 import pytest
 
-PATTERNS = ((1,), (2,), (7,), (100,), (1, 50, 3, 9), (1_000_000,))
+PATTERNS = ((1,), (2,), (3,), (7,), (20,), (100,), (1, 50, 3, 9), (1_000_000,))
 """Ticks of successive calls."""
 
 
@@ -63,7 +63,8 @@ def bag_of(directory: Path, run: Run, n_ticks: int, pattern: tuple[int, ...],
 
 @pytest.mark.parametrize(('name', 'scenario', 'n_ticks'), [
     ('leg', 'drop', 1100), ('rig_linear', None, 1020), ('rig_temperature', 'temperature', 1010),
-    ('quadruped', None, 130), ('press', None, 200)])
+    ('quadruped', None, 130), ('press', None, 200), ('leg', 'trot_leg', 300),
+    ('rig_rotary', 'wheel_sine', 150)])
 def test_a_bag_has_the_same_bytes_however_many_ticks_are_in_a_call(
         tmp_path, name, scenario, n_ticks):
     """With commands, an impact, inertial units, messages of each second and of each tick."""
@@ -120,6 +121,12 @@ def test_a_log_has_the_same_rows_also_where_it_grows():
     assert first[-1] == 331 and len(first[3]) > 1
     for room, pattern in ((330, (1000,)), (330, (1, 50, 3)), (40, (25,))):
         assert log_of(run, 330, pattern, room) == first
+
+
+def test_a_log_of_a_motion_has_every_applied_command():
+    run = load('leg', scenario='trot_leg')
+    first = log_of(run, 90, (1,), 90)
+    assert len(first[3]) > 60 and log_of(run, 90, (1000,), 90) == first
 
 
 def test_a_trip_is_told_once():
@@ -294,7 +301,8 @@ def watched(seconds: float) -> Watched:
     samples = np.zeros(2, SAMPLE)
     samples['state_since'], samples['trip_time'] = 0.25, (0.1, 0.2)
     return Watched(np.array([round(seconds * 1e3) - 1, 1_000_000]), samples,
-                   *(np.zeros(2, COMMAND) for _ in range(2)), np.array([0.1, 0.2]))
+                   *(np.zeros(2, COMMAND) for _ in range(2)), np.array([0.1, 0.2]),
+                   np.zeros(2, np.bool_))
 
 
 @pytest.mark.parametrize(('seconds', 'field', 'value', 'is_seen'), [
@@ -310,6 +318,15 @@ def test_a_tick_is_watched_for_what_actuators_do(seconds, field, value, is_seen)
         own.samples[field][1] = value
     assert Bound(watch, own).run() == is_seen
     assert own.clock.tolist() == [round(seconds * 1e3), 1_000_000]
+
+
+@pytest.mark.parametrize('applied', [(0, 0), (2, 0), (0, 2), (4, 2)])
+@pytest.mark.parametrize('expected', [(False, False), (True, False), (True, True)])
+def test_a_planned_command_is_not_seen_where_it_takes_effect(applied, expected):
+    """One that does not, or that nobody has planned, is."""
+    own = watched(0.5)
+    own.applied['kinds'], own.expected[:] = applied, expected
+    assert Bound(watch, own).run() == (tuple(kinds != 0 for kinds in applied) != expected)
 
 
 @pytest.mark.parametrize('link', [{'kind': 'none'}, {'kind': 'can', 'cycle_ms': 4.0}])
