@@ -1,5 +1,7 @@
 """Quiet ticks for any recorder: kernels fill a buffer, from which it gets tick by tick."""
 
+from collections.abc import Sequence
+
 from isa_ros.bag.message_chunk import MESSAGE_HEADER, Room
 from isa_ros.bag.packed import Layout, Packed
 from isa_ros.run.recorders import QuietRecorder, Recorder
@@ -14,10 +16,15 @@ class Buffered:
     """A `QuietRecorder` that passes the ticks of a stretch on when it ends."""
 
     def __init__(self, recorder: Recorder) -> None:
-        self.write_tick = recorder.write_tick
+        self._recorder = recorder
         self._buffer = np.empty(BUFFER_BYTES, np.uint8)
         self._layout: Layout | None = None
         self._t_ns = self._step_ns = self._tick_bytes = 0
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Pass a tick on; as `Recorder`."""
+        self._recorder.write_tick(t_ns, sequence, messages)
 
     def open_stretch(self, layout: Layout, t_ns: int, step_ns: int) -> Room:
         """Return room for ticks from ``t_ns`` on; as `QuietRecorder`."""

@@ -195,11 +195,7 @@ class Packer:
         return min((-((t_ns - end) // step_ns) - 1 for end in ends), default=_MANY)
 
     def quiet_layout(self, step_ns: int, applied: bytes = b'') -> Layout:
-        """
-        Return the layout of a tick without what few ticks have.
-
-        ``applied``: for each actuator whether it has a command; b'': none has.
-        """
+        """Return the layout of a tick by who has a command, b'': nobody; without what is rare."""
         none = bytes(len(self._kinds))
         return self._layout_of(applied or none, none, frozenset(self._rare_periods(step_ns)))
 
