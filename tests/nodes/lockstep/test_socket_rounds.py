@@ -7,7 +7,7 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import START
 from isa_ros.nodes.lockstep import sockets
 from isa_ros.nodes.lockstep.expected import Expected, Participants
-from isa_ros.nodes.lockstep.socket_rounds import SocketRounds
+from isa_ros.nodes.lockstep.socket_rounds import RoundEnds, SocketRounds
 from isa_ros.nodes.lockstep.sockets import LocalWire, LocalWires
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import encode_tick
@@ -87,3 +87,63 @@ def test_after_a_step_that_was_not_sent_nothing_is_received(wires, ends, rows, m
 def test_without_an_actuator_elsewhere_there_are_no_rounds(wires, ends, rows, run):
     assert not SocketRounds(wires, run).send(RUN, 3, rows)
     assert wires.is_open and ends[0].wait() is None
+
+
+def quiet_ends(wires, ends, rows) -> tuple[SocketRounds, RoundEnds, list[tuple[int, bool]]]:
+    """Return rounds without controllers, whose first step is sent, and what ends of ticks said."""
+    ended: list[tuple[int, bool]] = []
+
+    def end(tick: int, is_unsent: bool) -> None:
+        ended.append((tick, is_unsent))
+    run = participants()
+    rounds = SocketRounds(wires, run)
+    rounds._has_controllers = False
+    assert rounds.ends(RUN, end) is None    # before a step
+    assert rounds.send(RUN, 3, rows)
+    made = rounds.ends(RUN, end)
+    assert made is rounds.ends(RUN, end) is not None and rounds.ends(RUN + 1, end) is None
+    return rounds, made, ended
+
+
+def test_messages_of_a_tick_that_is_not_answered_are_left_once(wires, ends, rows):
+    rounds, made, ended = quiet_ends(wires, ends, rows)
+    assert rounds.left() == []
+    assert ends[1].send(b'of kfe')
+    made.begin_quiet(7)
+    assert [part.bound.run() for part in made.parts[:2]] == [0, 1]
+    assert made.end_quiet(5, 2, 1)
+    assert ended == [(7, False)]
+    assert rounds.left() == [b'of kfe'] and rounds.left() == []
+    assert ends[0].wait() == encode_tick(RUN, 3, rows, False)
+    assert ends[0].wait() == encode_tick(RUN, 7, rows, False) == rounds.step()
+
+
+@pytest.mark.parametrize(('n_ticks', 'place', 'expected', 'has_begun'), [
+    (4, -1, [(13, False)], False), (4, -9, [(13, False)], False), (0, -1, [], False),
+    (4, 0, [(14, True)], True), (0, 0, [(10, True)], True), (4, 1, [(14, False)], True),
+    (4, 2, [(14, False)], False), (0, 5, [(10, False)], False)])
+def test_the_last_tick_is_that_of_the_last_step(
+        wires, ends, rows, n_ticks, place, expected, has_begun):
+    """One that was finished by what follows the actuators has been answered."""
+    _, made, ended = quiet_ends(wires, ends, rows)
+    assert made.end_quiet(10, n_ticks, place) == has_begun
+    assert ended == expected
+
+
+def test_ticks_are_not_quiet_with_a_change_a_controller_or_a_closed_socket(wires, ends, rows):
+    rounds, made, _ = quiet_ends(wires, ends, rows)
+    assert made.is_settled
+    rows.tuned = {0: {'force.kp': 1e-7}}
+    assert not made.is_settled
+    rounds._has_controllers = True
+    assert rounds.ends(RUN, lambda tick, is_unsent: None) is None
+    rounds._has_controllers = False
+    wires.close()
+    assert rounds.ends(RUN, lambda tick, is_unsent: None) is None
+
+
+def test_another_run_has_other_ends(wires, ends, rows):
+    rounds, made, _ = quiet_ends(wires, ends, rows)
+    assert rounds.send(RUN + 5, 0, rows)
+    other = rounds.ends(RUN + 5, lambda tick, is_unsent: None)
+    assert other is not None and other is not made and other.parts != made.parts
