@@ -27,6 +27,10 @@ PLATFORMS: Mapping[str, Mapping[Version, str]] = {
     'aarch64': {Version.FMI2: 'linux-aarch64', Version.FMI3: 'aarch64-linux'}}
 """Folder of the library by processor and version; the second version has no name for aarch64."""
 SHARED = ('types.h', 'unit.h', 'inside.h', 'unit.c', 'step.c', 'state.c')
+SHIMS: Mapping[Version, Sequence[str]] = {
+    Version.FMI2: ('fmi2.h', 'fmi2.c'),
+    Version.FMI3: ('fmi3.h', 'fmi3.c', 'fmi3_absent.c')}
+"""What is of one version alone."""
 _FLAGS = ('-std=c11', '-O2', '-fPIC', '-fvisibility=hidden', '-ffp-contract=off', '-shared',
           '-Wl,--no-undefined', '-Wl,-z,noexecstack', '-Wl,--version-script=exports.map')
 _DATE = (1980, 1, 1, 0, 0, 0)    # of all files, so that equal units are equal bytes
@@ -92,7 +96,7 @@ def made(parts: Parts, target: Target) -> Made:
         f'{own.word}.c': of_library[f'{own.word}.c'] + filled(
             _source('constants.c'), {'NAME': own.word}),
         **{file: of_library[file] for file in (f'{own.word}.h', f'{own.word}_tables.h')},
-        **{file: _source(file) for file in (*SHARED, *map(_shim, Version))},
+        **{file: _source(file) for names in (SHARED, *SHIMS.values()) for file in names},
         'tables.c': tables.source(own, supply, table, may_change)}
     text = ''.join((*sources.values(), tables.header(own, supply, table, '')))
     token = hashlib.sha256(b''.join((*objects, text.encode()))).hexdigest()[:_TOKEN_DIGITS]
@@ -102,11 +106,6 @@ def made(parts: Parts, target: Target) -> Made:
 
 def _source(name: str) -> str:
     return (files('isa_ros.export.fmi') / 'sources' / name).read_text(encoding='utf-8')
-
-
-def _shim(version: Version) -> str:
-    """Return the name of the source of a version."""
-    return f'fmi{version.value[0]}.c'
 
 
 def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
@@ -141,7 +140,7 @@ def library(own: Made, version: Version, compiler: str = 'cc') -> bytes:
     exports = f'{{ global: fmi{version.value[0]}*; local: *; }};\n'
     files = {name: text.encode() for name, text in own.sources.items()} | objects | {
         'exports.map': exports.encode()}
-    others = {_shim(other) for other in Version if other is not version}
+    others = {file for other, shim in SHIMS.items() if other is not version for file in shim}
     sources = [name for name in own.sources if name.endswith('.c') and name not in others]
     return built(f'{own.parts.own.word}.so', files, [*_FLAGS, *sources, *objects], own.processor,
                  compiler)

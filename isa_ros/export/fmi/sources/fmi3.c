@@ -1,45 +1,8 @@
-/*
- * A unit by FMI 3.0 for co-simulation.
- *
- * The types are those of the standard's headers, by its text (version 3.0.2). Types of values that
- * no variable of a unit has, and what co-simulation with a fixed tick does not have, is refused
- * with a message.
- */
+/* A unit by FMI 3.0 for co-simulation; the rest of its functions are in fmi3_absent.c. */
+#include "fmi3.h"
 #include "unit.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
-
-typedef void *fmi3Instance;
-typedef void *fmi3InstanceEnvironment;
-typedef void *fmi3FMUState;
-typedef uint32_t fmi3ValueReference;
-typedef float fmi3Float32;
-typedef double fmi3Float64;
-typedef int8_t fmi3Int8;
-typedef uint8_t fmi3UInt8;
-typedef int16_t fmi3Int16;
-typedef uint16_t fmi3UInt16;
-typedef int32_t fmi3Int32;
-typedef uint32_t fmi3UInt32;
-typedef int64_t fmi3Int64;
-typedef uint64_t fmi3UInt64;
-typedef bool fmi3Boolean;
-typedef const char *fmi3String;
-typedef uint8_t fmi3Byte;
-typedef const fmi3Byte *fmi3Binary;
-typedef bool fmi3Clock;
-typedef enum { fmi3OK, fmi3Warning, fmi3Discard, fmi3Error, fmi3Fatal } fmi3Status;
-typedef enum { fmi3IntervalNotYetKnown } fmi3IntervalQualifier;
-typedef enum { fmi3Independent } fmi3DependencyKind;
-typedef void (*fmi3LogMessageCallback)(fmi3InstanceEnvironment, fmi3Status, fmi3String category,
-                                       fmi3String message);
-typedef void (*fmi3ClockUpdateCallback)(fmi3InstanceEnvironment);
-typedef void (*fmi3IntermediateUpdateCallback)(
-  fmi3InstanceEnvironment, fmi3Float64, fmi3Boolean, fmi3Boolean, fmi3Boolean, fmi3Boolean,
-  fmi3Boolean *, fmi3Float64 *);
-typedef void (*fmi3LockPreemptionCallback)(void);
-typedef void (*fmi3UnlockPreemptionCallback)(void);
 
 static void report(const unit_t *unit, enum status status, const char *category,
                    const char *message)
@@ -272,69 +235,3 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 size,
   *reached = unit_time(c);
   return (fmi3Status)status;
 }
-
-/* A function that a unit of this kind does not have; ARGUMENTS stands in parentheses. */
-#define NO_FUNCTION(NAME, ARGUMENTS)         \
-  EXPORT fmi3Status fmi3##NAME ARGUMENTS     \
-  {                                          \
-    return (fmi3Status)unit_refuse(c, #NAME); \
-  }
-
-#define REFERENCES const fmi3ValueReference vr[], size_t n
-#define FLOATS fmi3Float64 values[], size_t n_values
-
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-
-NO_FUNCTION(EnterEventMode, (fmi3Instance c))
-NO_FUNCTION(EnterConfigurationMode, (fmi3Instance c))
-NO_FUNCTION(ExitConfigurationMode, (fmi3Instance c))
-NO_FUNCTION(EnterContinuousTimeMode, (fmi3Instance c))
-NO_FUNCTION(EnterStepMode, (fmi3Instance c))
-NO_FUNCTION(EvaluateDiscreteStates, (fmi3Instance c))
-NO_FUNCTION(UpdateDiscreteStates,
-            (fmi3Instance c, fmi3Boolean *needed, fmi3Boolean *terminates, fmi3Boolean *nominals,
-             fmi3Boolean *states, fmi3Boolean *has_next, fmi3Float64 *next))
-NO_FUNCTION(GetClock, (fmi3Instance c, REFERENCES, fmi3Clock values[]))
-NO_FUNCTION(SetClock, (fmi3Instance c, REFERENCES, const fmi3Clock values[]))
-NO_FUNCTION(GetIntervalDecimal,
-            (fmi3Instance c, REFERENCES, fmi3Float64 intervals[],
-             fmi3IntervalQualifier qualifiers[]))
-NO_FUNCTION(GetIntervalFraction,
-            (fmi3Instance c, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
-             fmi3IntervalQualifier qualifiers[]))
-NO_FUNCTION(GetShiftDecimal, (fmi3Instance c, REFERENCES, fmi3Float64 shifts[]))
-NO_FUNCTION(GetShiftFraction,
-            (fmi3Instance c, REFERENCES, fmi3UInt64 counters[], fmi3UInt64 resolutions[]))
-NO_FUNCTION(SetIntervalDecimal, (fmi3Instance c, REFERENCES, const fmi3Float64 intervals[]))
-NO_FUNCTION(SetIntervalFraction,
-            (fmi3Instance c, REFERENCES, const fmi3UInt64 counters[],
-             const fmi3UInt64 resolutions[]))
-NO_FUNCTION(SetShiftDecimal, (fmi3Instance c, REFERENCES, const fmi3Float64 shifts[]))
-NO_FUNCTION(SetShiftFraction,
-            (fmi3Instance c, REFERENCES, const fmi3UInt64 counters[],
-             const fmi3UInt64 resolutions[]))
-NO_FUNCTION(GetNumberOfVariableDependencies,
-            (fmi3Instance c, fmi3ValueReference vr, size_t *n))
-NO_FUNCTION(GetVariableDependencies,
-            (fmi3Instance c, fmi3ValueReference vr, size_t of[], fmi3ValueReference on[],
-             size_t elements[], fmi3DependencyKind kinds[], size_t n))
-NO_FUNCTION(GetDirectionalDerivative,
-            (fmi3Instance c, REFERENCES, const fmi3ValueReference known[], size_t n_known,
-             const fmi3Float64 seed[], size_t n_seed, FLOATS))
-NO_FUNCTION(GetAdjointDerivative,
-            (fmi3Instance c, REFERENCES, const fmi3ValueReference known[], size_t n_known,
-             const fmi3Float64 seed[], size_t n_seed, FLOATS))
-NO_FUNCTION(GetOutputDerivatives,
-            (fmi3Instance c, REFERENCES, const fmi3Int32 orders[], FLOATS))
-NO_FUNCTION(CompletedIntegratorStep,
-            (fmi3Instance c, fmi3Boolean is_final, fmi3Boolean *event, fmi3Boolean *terminates))
-NO_FUNCTION(SetTime, (fmi3Instance c, fmi3Float64 time))
-NO_FUNCTION(SetContinuousStates, (fmi3Instance c, const fmi3Float64 values[], size_t n_values))
-NO_FUNCTION(GetContinuousStates, (fmi3Instance c, FLOATS))
-NO_FUNCTION(GetContinuousStateDerivatives, (fmi3Instance c, FLOATS))
-NO_FUNCTION(GetNominalsOfContinuousStates, (fmi3Instance c, FLOATS))
-NO_FUNCTION(GetEventIndicators, (fmi3Instance c, FLOATS))
-NO_FUNCTION(GetNumberOfEventIndicators, (fmi3Instance c, size_t *n))
-NO_FUNCTION(GetNumberOfContinuousStates, (fmi3Instance c, size_t *n))
-NO_FUNCTION(ActivateModelPartition,
-            (fmi3Instance c, fmi3ValueReference clock, fmi3Float64 time))
