@@ -9,6 +9,7 @@ from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.core.version import VERSION
+from isa_ros.errors import printable
 
 _TYPES = '@TYPES@'
 _NUMBER_WIDTH = len('  double refused_requests;')
@@ -34,11 +35,16 @@ def header(word: str, about: str) -> str:
     share is that of their text: headers with other types cannot be used together.
     """
     text = filled(source('actuator.h'), {
-        'NAME': word, 'GUARD': word.upper(), 'ABOUT': about, 'VERSION': VERSION,
+        'NAME': word, 'GUARD': word.upper(), 'ABOUT': in_comment(about), 'VERSION': VERSION,
         'WINDOWS': str(FORCE_WINDOWS), 'ENUMERATIONS': _enumerations(), 'SAMPLE': _sample()})
     _, _, types = text.partition(f'#define ISA_ACTUATOR_TYPES {_TYPES}')
     number = zlib.crc32(types.partition('#elif')[0].encode())
     return text.replace(_TYPES, f'0x{number:08x}')
+
+
+def in_comment(text: str) -> str:
+    """Return a text as one line of a comment of C."""
+    return printable(text).replace('*/', '* /')
 
 
 def upper(name: str) -> str:

@@ -40,7 +40,7 @@ def _object(kernels: tuple[tuple[str, Entry], ...], target: Target) -> bytes:
 def texts(own: Exported) -> Mapping[str, str]:
     """Return the text files of an actuator's library by their names, examples among them."""
     word, config = own.word, own.chosen.config
-    about = f'the actuator {config.name} of {own.chosen.run.source}, a {config.model}'
+    about = f'the actuator {config.name} of {own.chosen.run.source}, model {config.model}'
     code = filled(source('actuator.c'), {'NAME': word})
     return {
         f'{word}.h': header(word, about), f'{word}.c': code,

@@ -1,7 +1,6 @@
 """The tables of an exported actuator as text of C: places in its memory, values, names."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-import json
 import math
 from typing import Any
 
@@ -22,6 +21,7 @@ from isa_ros.reu.wiring import possible_modes
 import numpy as np
 
 _FIELDS = ('position', 'velocity', 'effort', 'stiffness', 'damping')
+_ASCII = 128
 _EVERYTHING = Bounds(-math.inf, math.inf, '', '')
 
 
@@ -36,8 +36,10 @@ def tables(own: Exported) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text as a string of C."""
-    return json.dumps(text)
+    """Return a text as a string of C: bytes that it may read otherwise are octal numbers."""
+    return '"' + ''.join(
+        chr(byte) if chr(byte).isprintable() and byte < _ASCII and chr(byte) not in '"\\?'
+        else f'\\{byte:03o}' for byte in text.encode()) + '"'
 
 
 def number(value: float) -> str:

@@ -50,7 +50,7 @@ def test_the_lines_for_cmake(path, tmp_path):
     for command in (['-S', path.parent, '-B', tmp_path], ['--build', tmp_path]):
         subprocess.run(['cmake', *command], check=True, capture_output=True)
     done = subprocess.run([tmp_path / 'my_program'], capture_output=True, text=True)
-    assert done.returncode == 0 and done.stdout.startswith('isa_v5, a isa_v5 of isa_ros ')
+    assert done.returncode == 0 and done.stdout.startswith('isa_v5, model isa_v5, isa_ros ')
 
 
 def test_all_files_are_listed():

@@ -97,7 +97,7 @@ def test_all_samples_of_the_example_in_c(made):
     assert np.ptp(found['position']) > 0.9 * step
     name = own.chosen.config.name
     count = len(own.chosen.parameters())
-    assert re.match(rf'{name}, a \w+ of isa_ros [\d.]+, {count} parameters\n', printed)
+    assert re.match(rf'{name}, model \w+, isa_ros [\d.]+, {count} parameters\n', printed)
     assert len(printed.splitlines()) == 11
 
 

@@ -87,5 +87,10 @@ def test_the_number_follows_the_types(monkeypatch):
     assert numbers[0] != numbers[1]
 
 
+def test_a_name_does_not_end_the_comment(tmp_path):
+    text = header('isa_one', 'the actuator a of run*/int x;\n#error.yaml')
+    assert text.splitlines()[1] == ' * isa_one: the actuator a of run* /int x;\\n#error.yaml.'
+
+
 def test_nothing_is_left_to_fill():
     assert re.findall('@[A-Z]+@', header('isa_one', 'an actuator')) == []

@@ -52,7 +52,7 @@ int main(int argc, char **argv)
   void *state = malloc(@NAME@_state_size());
   if (!actuator || !state || (argc > 1 && !file)) return 1;
 
-  printf("%s, a %s of isa_ros %s, %d parameters\n", about->name, about->model, about->version,
+  printf("%s, model %s, isa_ros %s, %d parameters\n", about->name, about->model, about->version,
          @NAME@_parameter_count());
   for (long k = 0; k < ticks; k++) {
     const isa_port_t port = port_of(&load, &about->start);
