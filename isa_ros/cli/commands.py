@@ -148,6 +148,9 @@ def recover(options: Namespace) -> bool:
 def compare(options: Namespace) -> bool:
     """Compare the configurations and the messages of two bags, or with a mapping signals."""
     if options.mapping:
+        if options.report:
+            raise ConfigError(
+                '--report is of two bags of isa_ros, and cannot be used with --mapping')
         from isa_ros.cli.measured_commands import compare as compare_measured
         return compare_measured(options)
     from isa_ros.bag.reader import Bag

@@ -89,16 +89,25 @@ def group(values: list[float], t: list[float], title: str = 'force') -> Group:
 
 
 def test_a_caption_says_how_far_apart_they_are():
-    """At the times of both: 3 and -4 kN apart of four samples."""
+    """At the times of both: 3, 0 and -4 kN apart, rms 5/sqrt(3)."""
     one = group([0.0, 1e3, 2e3, 3e3, 9e9], [0.0, 0.1, 0.2, 0.3, 0.35])
-    other = group([0.0, 4e3, 2e3, -1e3, 7e9], [0.0, 0.1, 0.2, 0.3, 0.4])
+    other = group([4e3, 2e3, -1e3, 7e9], [0.1, 0.2, 0.3, 0.4])
     panel, = over_each_other('ram', (one, other), ('a', 'b')).panels
     assert [own.label for own in panel.curves] == ['a: measured', 'b: measured']
-    assert panel.caption == 'measured: apart by 2.5 kN rms, at most 4, at t = 0.300 s.'
+    assert panel.caption == 'measured: apart by 2.89 kN rms, at most 4, at t = 0.300 s.'
     same, = over_each_other('ram', (one, one), ('a', 'b')).panels
     assert same.caption == 'measured: equal.'
     never, = over_each_other('ram', (one, group([1.0], [7.0])), ('a', 'b')).panels
     assert never.caption == 'measured: no sample at the same time.'
+
+
+def test_only_curves_of_one_name_are_held_against_each_other():
+    one, other = group([1.0], [0.0]), group([2.0], [0.0])
+    renamed = other._replace(panels=[own._replace(curves=[
+        own.curves[0]._replace(label='estimated')]) for own in other.panels])
+    panel, = over_each_other('ram', (one, renamed), ('a', 'b')).panels
+    assert panel.caption == '' and [own.label for own in panel.curves] == [
+        'a: measured', 'b: estimated']
 
 
 def test_a_panel_or_group_of_one_run_is_shown_alone():
@@ -125,6 +134,11 @@ def test_the_command_writes_it_and_still_answers_no(bags, tmp_path, capsys):
     assert f'\n{page}\n{tmp_path / "both_rotor.png"}\n' in capsys.readouterr().out
     assert main(['compare', str(bags[0]), str(bags[0]), '--report', str(page)]) == 0
     assert 'configuration, scenario and versions are equal' in page.read_text()
+
+
+def test_a_measurement_of_others_has_no_such_page(bags, tmp_path, capsys):
+    assert main(['compare', *map(str, bags), '--mapping', 'a.yaml', '--report']) == 2
+    assert '--report is of two bags of isa_ros, and cannot be used' in capsys.readouterr().err
 
 
 def test_another_file_is_not_replaced(bags, runs, tmp_path):

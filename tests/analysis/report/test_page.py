@@ -49,6 +49,20 @@ def test_every_panel_is_drawn_without_a_complaint(browser, tmp_path):
     assert browser.log() == []
 
 
+def test_a_run_of_one_sample_is_shown(browser, tmp_path):
+    """And one of two; zooming into it does nothing wrong."""
+    run = isa_ros.load('rig_linear').simulate(0.001).save(tmp_path / 'two')
+    one = rewrite(Bag(run), tmp_path / 'one',
+                  lambda topic, sequence, data: data if sequence == 0 else None)
+    for bag, end in ((run, '0.0010'), (one, '0.0000')):
+        browser.load(page_of(bag, tmp_path))
+        browser.run("dispatchEvent(new KeyboardEvent('keydown', {key: '+'}))")
+        assert browser.run("return document.getElementById('range').textContent") == (
+            f'0.0000 to {end} s')
+        assert browser.run("return document.querySelectorAll('.chart').length") == 7
+    assert browser.log() == []
+
+
 def test_the_canvas_has_the_curves(browser, tmp_path):
     """Pixels in the color of the first curve, from the left to the right end."""
     browser.load(page_of(GOLDEN / 'leg_touchdown', tmp_path))
