@@ -10,8 +10,8 @@ from tests.ros.domains import held_domain
 
 DOCS = Path(__file__).parents[2] / 'docs'
 PAGES = {
-    'c_controller': 3, 'controller': 9, 'coupling': 1, 'lockstep': 1, 'pump_sizing': 3,
-    'reproduce': 8, 'signs': 1, 'tutorial': 12}
+    'c_controller': 3, 'controller': 9, 'coupling': 1, 'lesson_pressure': 3, 'lockstep': 1,
+    'pump_sizing': 3, 'reproduce': 8, 'signs': 1, 'tutorial': 12}
 """Pages, and how many of their blocks are run or written to a file."""
 
 
