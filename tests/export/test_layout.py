@@ -52,6 +52,15 @@ def test_places_follow_the_order_of_the_arrays():
         assert [layout.place(array) for array in order] == [16 * k for k in range(8)]
 
 
+def test_neighbours_and_parts():
+    """Arrays that only touch are apart; a part of one does not end it."""
+    own = np.arange(6.0)
+    layout = Layout([(own[:1], own[1:2])])
+    assert layout.place(own[1:2]) == 16 and layout.size == 32
+    layout = Layout([(own[:4], own[1:2])])
+    assert layout.place(own[3:4]) == 24 and layout.size == 32
+
+
 def test_an_array_that_is_not_in_the_block():
     own = np.arange(6.0)
     layout = Layout([(own[1:4],)])

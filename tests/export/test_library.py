@@ -214,6 +214,7 @@ def test_parameters_by_name(loaded):
     assert (bore.number, bore.unit, bore.source) == (21.5, b'mm', b'paper Table 2')
     assert bore.range.startswith(b'> 0') and b'piston' in bore.meaning
     assert np.isnan(parameter(named(b'plant.kind')).number)
+    assert parameter(named(b'reu.force.kv')).unit == b'output per m/s'
     for name in (b'plant.drive.bore', b'plant.drive.bore_mmm', b'', None):
         assert named(name) is None
 
@@ -345,7 +346,7 @@ def test_the_configured_start_may_be_beyond_the_stroke(tmp_path):
     (command(HAS_SETPOINT, velocity=1.7), BEYOND_RANGE),
     (command(HAS_SETPOINT, effort=7501.0), BEYOND_RANGE),
     (command(HAS_SETPOINT, stiffness=-1.0), BEYOND_RANGE),
-    (command(HAS_GAINS, damping=1e9), BEYOND_RANGE),
+    (command(HAS_GAINS, damping=3e7), BEYOND_RANGE),      # a stiffness may be 5e7
     (command(HAS_GAINS, stiffness=np.inf), NOT_FINITE),
     (command(HAS_SETPOINT | HAS_MODE, mode=MODES.index('force'), effort=np.nan), NOT_FINITE),
 ])
@@ -439,7 +440,7 @@ def test_codes_have_messages(loaded):
         assert loaded.message(1 + k) == f'{state_name(k)} is not finite: the model has diverged'
 
 
-def test_states_that_are_refused(loaded):
+def test_states_that_are_refused(loaded, own):
     """Another size, another time, numbers that no state has, and those of another actuator."""
     instance = Instance(loaded)
     for k in range(20):
@@ -459,6 +460,10 @@ def test_states_that_are_refused(loaded):
     assert instance.restore(changed(8, np.nan)) == WRONG_STATE
     for at in (len(state) - 16, len(state) - 8, len(state) - 24):
         assert instance.restore(changed(at, 7)) == WRONG_STATE
+    for at in (len(state) - 1, len(state) - 16 - own.actuator.tuning.nbytes):
+        wrong = state.copy()
+        wrong[at] ^= 1
+        assert instance.restore(wrong) == WRONG_STATE
     assert instance.restore(state) == 0 and bytes(instance.memory) == before
 
 
