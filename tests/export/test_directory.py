@@ -48,7 +48,7 @@ def test_foreign_files(tmp_path):
 
 def test_files_that_were_changed(tmp_path):
     write(tmp_path, FILES)
-    (tmp_path / 'one.h').write_text('mine')
+    (tmp_path / 'one.h').write_text('headed')
     refused(tmp_path, r'one\.h is not as it was exported; nothing is written')
 
 
