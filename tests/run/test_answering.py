@@ -10,7 +10,7 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.kernel import IS_COMPILED
-from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT
+from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.lockstep.sockets import LARGEST
@@ -235,6 +235,14 @@ def test_what_is_unusual_is_left_as_it_came(bench, name):
     bench.coordinator.send(encoded(7))
     assert bench.run(7) is Ended.ANSWERED
     assert bench.coordinator.recv(LARGEST) == bench.by_python(7)
+
+
+@pytest.mark.parametrize('field', LOAD_PORT.names)
+def test_each_number_of_a_port_is_checked(bench, field):
+    rows = step_rows(7)
+    rows.ports[field][INDEX] = np.nan
+    bench.coordinator.send(encode_tick(RUN, 7, rows, False))
+    assert bench.run(7) is Ended.OTHER and np.isfinite(bench.actuator.ticked.ports[field]).all()
 
 
 def test_a_port_of_a_supply_that_is_not_finite_is_left():
