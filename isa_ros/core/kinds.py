@@ -99,8 +99,8 @@ def words_of(value: Any) -> list[int]:
     """Return the words of a value that has a kind."""
     if isinstance(value, float):    # numpy's too
         return [*_WORD.unpack(_FLOAT.pack(value))]
-    if isinstance(value, np.void):
-        return [value.__array_interface__['data'][0]]
+    if isinstance(value, np.void):  # its interface lists all fields, and has a copy's address
+        return [np.frombuffer(value, np.uint8).ctypes.data]
     if isinstance(value, np.ndarray):
         words = [value.ctypes.data, *value.shape]
         return words if value.flags.c_contiguous else [*words, *value.strides]

@@ -1,5 +1,6 @@
 """Kinds of values, their words, and what kernels return."""
 
+import ctypes
 from typing import NamedTuple
 
 from isa_ros.core.kinds import (
@@ -64,6 +65,12 @@ def test_words_of_arrays_and_records():
     assert words_of(array[:, ::2]) == [array.ctypes.data, 2, 2, 24, 16]
     rows = np.zeros(3, MASS)
     assert words_of(rows[2]) == [rows.ctypes.data + 2 * MASS.itemsize]
+    own = rows[2].copy()
+    own['x'] = 6.5
+    address, = words_of(own)
+    assert ctypes.c_double.from_address(address).value == 6.5
+    ctypes.c_double.from_address(address).value = 8.5
+    assert own['x'] == 8.5
     assert words_of((rows, (7, True))) == [rows.ctypes.data, 3, 7, 1]
 
 
