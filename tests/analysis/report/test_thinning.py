@@ -35,6 +35,12 @@ def test_of_many_samples_every_peak_is_kept():
         assert (kept.min(), kept.max()) == (part.min(), part.max())
 
 
+def test_a_curve_reaches_the_end_of_the_run():
+    """Also where its last sample is no extreme."""
+    values = np.append(np.tile([0.0, 1.0], 50_000), 0.5)
+    assert extreme_places(values, 2000)[-1] == 100_000
+
+
 def test_around_events_all_samples_are_kept():
     kept = Thinning(10, [20.0, 99.9]).thinned(Signal(T, T))
     for t_s in (20.0, 99.9):
