@@ -107,10 +107,10 @@ def once(at: int, work: Callable[[TickLoop, Robot], object]) -> Callable[..., ob
     return act
 
 
-def delay(loop: TickLoop, robot: Robot) -> None:
-    """Let both actuators answer later than a wait for them lasts."""
+def delay(loop: TickLoop, robot: Robot, late_ones: slice = slice(None)) -> None:
+    """Let actuators answer later than a wait for them lasts."""
     robot.transport._next_check = time.monotonic() + 5.0
-    for end in robot.ends:
+    for end in robot.ends[late_ones]:
         serve = end._role.serve
 
         def late(serve=serve, end=end) -> None:
@@ -118,6 +118,11 @@ def delay(loop: TickLoop, robot: Robot) -> None:
             time.sleep(0.25)
             serve()
         end._role.serve = late
+
+
+def delay_first(loop: TickLoop, robot: Robot) -> None:
+    """Let the first be late, after the answer of the other has arrived."""
+    delay(loop, robot, slice(1))
 
 
 def shut(loop: TickLoop, robot: Robot) -> None:
@@ -134,7 +139,7 @@ def close_ours(loop: TickLoop, robot: Robot) -> None:
 
 
 @pytest.mark.parametrize(('work', 'place'), [
-    (delay, _RECEIVE), (shut, _SEND), (close_ours, _RECEIVE)])
+    (delay, _RECEIVE), (delay_first, _RECEIVE), (shut, _SEND), (close_ours, _RECEIVE)])
 def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
         tmp_path, observer, places, expected, monkeypatch, work, place):
     """Late answers, and connections that are lost: the same bytes by the topics, at once."""
