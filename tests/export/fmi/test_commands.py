@@ -42,6 +42,7 @@ COURSE = {
     170: ({'enable': True, 'mode': 6}, {'is_enabled': True, 'mode': 'impedance'}),
     200: ({'quick_stop': True}, {'quick_stop': True}),
     205: ({'quick_stop': True}, None),
+    250: ({'enable': True}, None),         # as before: it stays disabled
     260: ({'quick_stop': False, 'enable': False}, {'is_enabled': False}),
     270: ({'enable': True}, {'is_enabled': True}),
 }

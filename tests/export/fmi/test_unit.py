@@ -172,6 +172,8 @@ def test_time_begins_where_the_importer_says(make):
     assert unit.reached == 2.5
     unit.step(10)
     assert unit.reached == 2.51
+    found = unit.slave.doStep(2.51, 4 * STEP)
+    assert found == ((False, False, False, 2.514) if unit.is_3 else None)
 
 
 def test_equal_instances_do_not_know_each_other(make, case):
@@ -215,8 +217,12 @@ def test_bytes_that_are_no_state_are_refused(make):
     unit, other = make(), make()
     unit.step(20)
     state, before = unit.state(), other.state()
-    for text, broken in (('a state of', state[:-1]), ('a state of', b''),
+    pressure = np.float64(unit.get('supply.pressure')).tobytes()
+    assert HEAD < state.index(pressure) < len(state) // 4    # of the supply, before the actuator
+    for text, broken in ((f'a state of {len(state) - 1} bytes, must be', state[:-1]),
+                         ('a state of 0 bytes, must be', b''),
                          ('not a state of this unit', b'x' + state[1:]),
+                         ('not a state of this unit', state.replace(pressure, NAN, 1)),
                          ('not a state of this unit', state[:HEAD] + NAN + state[HEAD + 8:]),
                          ('', state[:-1] + bytes([state[-1] ^ 1])),
                          ('', state[:len(state) // 2] + b'\xff' * 400
@@ -314,7 +320,7 @@ def test_types_and_references_are_checked(make):
         refused(unit, ERROR, f'value reference {beyond}, must be < {most}', read, [beyond])
     write = unit.slave.setFloat64 if unit.is_3 else unit.slave.setReal
     for name in ('position', 'supply.pressure', 'plant.drive.bore_mm'):
-        refused(unit, ERROR, f'{name} is not possible with this unit', write,
+        refused(unit, ERROR, f'{name} is computed or constant, it cannot be set', write,
                 [unit.variables[name].valueReference], [0.02])
 
 

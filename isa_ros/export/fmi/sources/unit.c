@@ -209,12 +209,19 @@ static enum status say_range(const unit_t *unit, enum status status, const struc
   return unit_say(unit, status, message);
 }
 
+static enum status say_fixed(const unit_t *unit, const struct variable *own)
+{
+  char message[UNIT_MESSAGE_BYTES];
+  snprintf(message, sizeof message, "%s is computed or constant, it cannot be set", own->name);
+  return unit_say(unit, STATUS_ERROR, message);
+}
+
 static enum status write_one(unit_t *unit, const struct variable *own, double value)
 {
   const int is_start = own->home == HOME_INPUT && own->place >= IN_START_POSITION &&
                        own->place <= IN_START_FORCE;
   enum status status = STATUS_OK;
-  if (own->home != HOME_INPUT) return unit_refuse(unit, own->name);
+  if (own->home != HOME_INPUT) return say_fixed(unit, own);
   if (is_start && unit->given.phase > BEGINNING) return unit_refuse_phase(unit, own->name);
   if (!is_finite(value))
     return say_range(unit, STATUS_DISCARD, own, value, "the value before stays");
