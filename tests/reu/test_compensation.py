@@ -53,6 +53,7 @@ def test_flow_beyond_the_transition_is_in_proportion_to_the_demand(demand):
 
 @given(demand=demands)
 @example(demand=1.05e-4)        # just beyond the transition
+@example(demand=-0.98e-4)       # just within, where the output is more than the overlap
 def test_the_inverse_gives_the_demand_back(demand):
     """R21, for a block that takes over at a present output."""
     assert demand_for(compensated(demand, BAND), BAND) == pytest.approx(
