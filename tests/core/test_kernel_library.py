@@ -131,6 +131,7 @@ NOT_FOUND = 'ModuleNotFoundError: import of llvmlite halted; None in sys.modules
     ('own.times(2)', SOURCE.replace('FACTOR = 3', 'FACTOR = 4'), {}),
     ('own.times(2)', SOURCE + '# a remark\n', {}),
     ('own.FACTOR = 4; own.times(2)', SOURCE, {}),
+    ('own.FACTOR = {}; own.times(2)', SOURCE, {}),
     ('own.times(True)', SOURCE, {}),
     ('own.times(x=2)', SOURCE, {}),
     ('own.scaled(1.5, by=4.0)', SOURCE, {}),
@@ -163,6 +164,8 @@ def test_a_symbol_tells_forms_and_kinds_apart():
     found = {symbol_of(double, form, kind)
              for form in ('bound', 'called') for kind in (one, other)}
     assert len(found) == 4
+    assert Entry(double, one).symbol == symbol_of(double, 'bound', one)
+    assert Entry(double, one, is_called=True).symbol == symbol_of(double, 'called', one)
     assert symbol_of(double, 'called', one) in found
     assert all(name.startswith('double_') and name.isidentifier() for name in found)
 

@@ -124,8 +124,10 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch):
     monkeypatch.setattr(
         make_kernels, 'wait', lambda futures, *_: SimpleNamespace(done=list(futures)))
     said = io.StringIO()
-    making = Making(['v3'], Progress(said))
+    progress = Progress(said)
+    making = Making(['v3'], progress)
     making.run(1)
+    assert (progress.left, progress.done) == (0, 3 * 30 + 200 + 90 + 20 + 9)
     assert order == [ALONE, 'tick', 'arm', 'b', 'leg', 'c', 'a']
     assert {symbol: own.objects for symbol, own in making.made.items()} == {
         symbol: {'v3': symbol.encode()} for symbol in ('tick', 'b', 'c', 'a')}
