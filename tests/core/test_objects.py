@@ -107,6 +107,15 @@ def test_symbols_of_an_object():
     assert undefined_symbols(code) == ['f']
 
 
+def test_a_linker_links_too(entries, tmp_path):
+    """That of a cross compiler comes without the compiler."""
+    out = tmp_path / 'lib.so'
+    library_of([object_of({'isa_count': entries['isa_count']}, own_target())], out, 'ld')
+    given = Rows(np.array([3]))
+    assert loaded(out, 'isa_count')(given) == Bound(count, Rows(np.array([3]))).run()
+    assert b'lib.so' in out.read_bytes()
+
+
 @kernel
 def take_sine(own):
     """Call a function that no object has."""
