@@ -404,6 +404,9 @@ def test_feeds_are_finite(loaded):
     assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0)) == 0
     fed = instance.fed.tobytes()
     assert any(fed) and instance.tick(port()) == 0
+    assert instance.fed.tobytes() == fed
+    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0)) == 0
+    assert instance.fed.tobytes() != fed
 
 
 def test_a_divergence_stays_until_the_next_start(loaded):

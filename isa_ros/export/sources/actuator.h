@@ -114,7 +114,7 @@ typedef struct isa_reply {
   double return_volume;    /* oil given to the return, m3 */
 } isa_reply_t;
 
-/* What it gives to a supply that has an isa_feed; zeros to another. */
+/* What it gave to its supply in the last tick with an isa_feed; zeros before the first. */
 typedef struct isa_fed {
   double flow;             /* drawn at the end of the tick, m3/s */
   double conductance;      /* dq/dP of its valve there, m3/s/Pa */
