@@ -10,8 +10,10 @@ from isa_ros.analysis.measured.against import against, as_text, NONE
 from isa_ros.analysis.measured.closing import free_of
 from isa_ros.analysis.measured.mapping import load_mapping
 from isa_ros.analysis.measured.measurement import read_measurement
-from isa_ros.analysis.measured.playback import played, prepared
+from isa_ros.analysis.measured.playback import Playback, played, prepared
+from isa_ros.analysis.signals.signals import Signal
 from isa_ros.cli.main import main
+from isa_ros.controller import State
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -87,6 +89,16 @@ def test_the_run_begins_as_the_measurement_and_follows_its_command(
         warnings.simplefilter('error')
         simulated = played(run, 'ram', own, 0.2)['position']
     assert simulated.values[-1] > 0.05 and len(simulated.t) == 201
+
+
+@pytest.mark.parametrize('t_ns, expected', [
+    (0, 1.0), (498_000_000, 1.0), (598_000_000, 1.0), (599_000_000, 2.0), (900_000_000, 2.0)])
+def test_a_command_holds_until_the_next_and_the_first_before_it(
+        t_ns: int, expected: float) -> None:
+    """Of the tick in which the setpoint takes effect, 1 ms later."""
+    commands = {'position_command': Signal(np.array([0.5, 0.6]), np.array([1.0, 2.0]))}
+    state = State(t_ns, {}, {}, {})
+    assert Playback('ram', commands, 1_000_000).step(state)['ram'].position == expected
 
 
 def test_a_command_of_a_mode_is_given_in_that_mode(

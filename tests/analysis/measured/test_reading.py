@@ -11,7 +11,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.errors import BagError, ConfigError
 import numpy as np
 import pytest
-from tests.bag.golden import GOLDEN
+from tests.bag.golden import GOLDEN, rewrite
 
 BAG = GOLDEN / 'rotor_step'
 WANTED = {'/rotor/valve': ['position[0]', 'effort[0]'], '/rotor/load_cell': ['wrench.torque.z']}
@@ -85,6 +85,16 @@ def test_both_kinds_of_bags_give_the_same_numbers(sqlite: Path) -> None:
         assert np.array_equal(other[name][0], t) and np.array_equal(other[name][1], values)
     t, spool = one['/rotor/valve position[0]']
     assert (len(t), t[0], t[-1]) == (151, 0.0, 0.15) and np.ptp(spool) > 1e-5
+
+
+def test_times_begin_with_the_first_message_of_all(tmp_path: Path) -> None:
+    """The load cell of this bag is 10 ms late."""
+    bag = rewrite(
+        Bag(BAG), tmp_path / 'late', lambda topic, sequence, data: None
+        if topic == '/rotor/load_cell' and sequence < 10 else data)
+    found = read_fields(bag, WANTED)
+    assert found['/rotor/load_cell wrench.torque.z'][0][0] == pytest.approx(0.01, abs=1e-12)
+    assert found['/rotor/valve position[0]'][0][0] == 0.0
 
 
 @pytest.mark.parametrize('wanted, expected', [
