@@ -156,3 +156,18 @@ def test_the_policy_stops_markup_that_got_through(browser, tmp_path):
     shown = browser.run("return getComputedStyle(document.querySelector('main')).display")
     assert shown == 'block'
     assert sum('Content Security Policy' in line for line in browser.log()) >= 3
+
+
+def test_thinning_keeps_peaks_and_gaps_and_the_nearest_sample_is_read(browser, tmp_path):
+    """A spike of one sample up, one down and a gap among 100 000, drawn on 500 pixels."""
+    browser.load(page_of(GOLDEN / 'rotor_step', tmp_path))
+    assert browser.run("""
+        const grid = gridOf([{t0: 0, step: 1e-3, n: 100000}], 0), v = new Float32Array(100000);
+        v[777] = 9; v[40003] = -7; v[60000] = NaN;
+        const [x, y] = thinned(grid, v, 0, 100, 500);
+        return [x.length < 1010, y.includes(9), x[y.indexOf(9)], x[y.indexOf(-7)],
+                y.filter(own => own === null).length, x[y.indexOf(null)]]""") == [
+        True, True, pytest.approx(0.777), pytest.approx(40.003), 1, pytest.approx(60.0)]
+    assert browser.run("""
+        const at = gridOf([{t0: 2, step: 0.1, n: 50}], 0).at;
+        return [at(2.24), at(2.26), at(0), at(99)]""") == [2, 3, 0, 49]
