@@ -106,7 +106,6 @@ class QuietTicks:
         self._clock[0] = tick
         self._trip_times[:] = self._rows.samples['trip_time']
         self._rows.take_requests()
-        self._rows.changes = {}
         self.ends.begin_quiet(tick)
         parts = [*self._tick] if source is None else [self._plan.part, *self._tick]
         for sink in sinks:
