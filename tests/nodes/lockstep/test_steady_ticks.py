@@ -209,3 +209,16 @@ def test_after_something_else_a_step_is_checked_first(bench, node, ticks):
     assert ticks.are_next
     ticks.forget()
     assert not ticks.are_next
+
+
+def test_behind_a_link_commands_are_not_kept():
+    """They take effect at frames, and have messages when sent and when applied."""
+    bench = Bench(is_linked=True)
+    node = Quiet(bench)
+    ticks = SteadyTicks(node, node)
+    ticks.expect(decode_step(encoded(4)), INDEX)
+    send(bench, 5)
+    ticks.run(node, 5)
+    ticks.publish()
+    assert node.published == [(1, False)]
+    closed(bench)
