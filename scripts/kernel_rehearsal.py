@@ -52,7 +52,7 @@ class Wanted(NamedTuple):
 
     @property
     def entry(self) -> Entry:
-        """The entry."""
+        """Return the entry."""
         return Entry(getattr(import_module(self.module), self.name), self.kind, self.is_called)
 
 

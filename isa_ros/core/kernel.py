@@ -58,7 +58,7 @@ class Kernel:
 
     @cached_property
     def compiled(self) -> Any:
-        """The kernel as the compiler has it."""
+        """Return the kernel as the compiler has it."""
         from isa_ros.core.compiler import dispatcher_of
         return dispatcher_of(self)
 
@@ -120,7 +120,7 @@ class Entry(NamedTuple):
 
     @property
     def compiled(self) -> Any:
-        """The entry as the compiler has it."""
+        """Return the entry as the compiler has it."""
         from isa_ros.core.compiler import bound_entry, called_entry
         return (called_entry if self.is_called else bound_entry)(self.kernel, self.kind)
 

@@ -18,7 +18,7 @@ class Intrinsic:
 
     @cached_property
     def _numba_type_(self) -> Any:
-        """The type by which numba finds it."""
+        """Return the type by which numba finds it."""
         from numba.core.registry import cpu_target
         from numba.extending import intrinsic
         typing = cpu_target.typing_context

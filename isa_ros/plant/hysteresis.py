@@ -12,6 +12,7 @@ Neglected: that a valve at rest creeps, and that a ripple of the oil takes hyste
 import math
 from typing import Any, Protocol
 
+from isa_ros.core.elementary import atan2
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter
 from isa_ros.core.record import record
@@ -117,7 +118,7 @@ def passed_by_play(half: float, amplitude: float) -> complex:
         return 0j
     share = 1.0 - 2.0 * half / amplitude
     across = math.sqrt(1.0 - share * share)
-    return complex(0.5 + (math.asin(share) + share * across) / math.pi,
+    return complex(0.5 + (atan2(share, across) + share * across) / math.pi,
                    -across * across / math.pi)
 
 
@@ -130,8 +131,10 @@ def passed_of_sine(sheet: Hysteretic, percent: float) -> complex:
     """
     reach, half = 0.5 * sheet.hysteresis_from_percent, 0.5 * sheet.threshold_percent
     share = (sheet.hysteresis_percent - sheet.threshold_percent) / reach
-    behind = [passed_by_play(half + (j + 0.5) / _PLAYS * reach, percent) for j in range(_PLAYS)]
-    return (1.0 - share) * passed_by_play(half, percent) + share * sum(behind) / _PLAYS
+    passed = (1.0 - share) * passed_by_play(half, percent)
+    for j in range(_PLAYS):
+        passed += share / _PLAYS * passed_by_play(half + (j + 0.5) / _PLAYS * reach, percent)
+    return passed
 
 
 @kernel

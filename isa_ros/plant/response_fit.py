@@ -46,15 +46,15 @@ def damping_of(at_90: float, at_3db: float) -> float:
     return math.sqrt(0.5 - 0.25 * (squared * squared - 1.0) / squared)
 
 
-def leading(at_90: float, at_3db: float, lag: float) -> float:
+def leading(at_90: float, at_3db: float, t: float) -> float:
     """
     Return the frequency (Hz) of -90 degrees of a response behind something that lags  (V31).
 
-    With ``lag`` (rad, below 45 degrees) of the frequency both together have -90 degrees at
+    ``t`` is the tangent of that lag, below 1. At the frequency both together have -90 degrees at
     ``at_90`` Hz; the -3 dB stay. x = w_n^2 solves |H|^2 = 1/2 at the one and
-    2 zeta w_n w tan(lag) = w_n^2 - w^2 at the other.
+    2 zeta w_n w t = w_n^2 - w^2 at the other.
     """
-    t, stated, other = math.tan(lag), at_90 * at_90, at_3db * at_3db
+    stated, other = at_90 * at_90, at_3db * at_3db
     ratio = other / stated
     first, half = ratio - t * t, t * t * other + ratio * stated
     last = t * t * other * other + ratio * stated * stated

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 import math
 from typing import NamedTuple
 
-from isa_ros.core.elementary import atan2
 from isa_ros.core.units import LPM, MILLI, MPA, PERCENT
 from isa_ros.plant.hysteresis import Hysteretic, passed_of_sine
 from isa_ros.plant.motor import Motor
@@ -155,8 +154,7 @@ def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[Fit]:
         return
     passed = passed_of_sine(valve, _SMALL)
     own = SecondOrder(sheet.natural_frequency_rad_per_s, sheet.damping_ratio)
-    lag = -atan2(passed.imag, passed.real)
-    if math.tan(lag) >= sheet.minus_3_db_hz / sheet.minus_90_deg_hz:
+    if -passed.imag * sheet.minus_90_deg_hz >= passed.real * sheet.minus_3_db_hz:
         return
 
     def is_below(frequency: float) -> bool:
@@ -164,7 +162,8 @@ def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[Fit]:
     yield Fit(f'spool behind the hysteresis, -90 deg at {_SMALL:g} %', None,
               _root(is_below, own.w_n), 'Hz')
     yield Fit(f'minus_90_deg_hz with which that is {sheet.minus_90_deg_hz:g} Hz', None,
-              leading(sheet.minus_90_deg_hz, sheet.minus_3_db_hz, lag), 'Hz')
+              leading(sheet.minus_90_deg_hz, sheet.minus_3_db_hz, -passed.imag / passed.real),
+              'Hz')
 
 
 _WORDS = {'minus_90_deg': '-90 deg', 'minus_3_db': '-3 dB'}

@@ -130,7 +130,7 @@ def test_points_that_contradict_each_other_are_refused_with_both(values, message
     (80.0, 70.0, 5.4), (120.0, 150.0, 12.0), (60.0, 20.0, 3.0)])
 def test_a_spool_in_front_of_a_lag_leads_by_it(at_90, at_3db, lag):
     """-90 degrees with the lag, and the stated -3 dB."""
-    alone = leading(at_90, at_3db, np.radians(lag))
+    alone = leading(at_90, at_3db, np.tan(np.radians(lag)))
     own = SecondOrder(2.0 * np.pi * alone, damping_of(alone, at_3db))
     assert np.degrees(np.angle(gain_at(own, at_90, 1.0))) == pytest.approx(lag - 90.0, abs=1e-9)
     assert abs(gain_at(own, at_3db, 1.0)) == pytest.approx(np.sqrt(0.5), rel=1e-11, abs=0.0)

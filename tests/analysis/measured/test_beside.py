@@ -44,7 +44,7 @@ def test_a_bag_is_read_by_topic_and_field(
 
 @pytest.mark.parametrize('arguments, expected', [
     (['--tolerance', 'x.yaml'], '--tolerance is not used with --mapping'),
-    (['--report'], '--report is not used with --mapping'),
+    (['--report'], '--report is of two bags of isa_ros, and cannot be used with --mapping'),
     ([], 'nothing in common')])
 def test_a_comparison_that_cannot_be_made_is_2(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str],
