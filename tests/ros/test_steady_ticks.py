@@ -9,8 +9,9 @@ from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMIN
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import SimulationDiverged
-from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
-from isa_ros.nodes.lockstep import coordinator_end as lockstep, steady_ticks as steady
+from isa_ros.nodes.actuator.node import _APPLIED, ActuatorNode, NodeSetup
+from isa_ros.nodes.lockstep import (
+    coordinator_end as lockstep, participant_end as participant, steady_ticks as steady)
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
@@ -18,6 +19,7 @@ from isa_ros.nodes.lockstep.steady_ticks import steady_ticks, SteadyTicks
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_tick
+from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
@@ -244,6 +246,24 @@ def test_a_subscription_receives_all_setpoints_since_the_last_ones_that_are_kept
             found.append(messages)
             robot.transport.close()
     assert found[0] == found[1] and len(found[0]) == 48
+    assert max(looped) > 5
+
+
+def test_what_is_kept_is_published_when_no_message_comes(observer, looped, monkeypatch):
+    """A run that waits shows its last setpoint to a later subscription."""
+    monkeypatch.setattr(steady, 'KEPT_NS', 10**12)
+    monkeypatch.setattr(participant, 'TOPIC_CHECK_S', 100.0)
+    with driven(observer) as robot:
+        messages: list[tuple[int, bytes]] = []
+        noted(robot.nodes[1].outlet, False, messages)
+        for k in range(30):
+            robot.tick(k, command_at(k))
+
+        def applied() -> list[float]:
+            return [decode(data, JointState).position[0] for slot, data in [*messages]
+                    if slot == _APPLIED]
+        wait_for(lambda: applied()[-1:] == [command_at(29)], 'the last setpoint')
+        robot.transport.close()
     assert max(looped) > 5
 
 

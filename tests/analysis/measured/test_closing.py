@@ -1,0 +1,81 @@
+"""The search for free parameters, over machines that are formulas."""
+
+from collections.abc import Callable, Mapping
+
+from isa_ros.analysis.measured import closing
+from isa_ros.analysis.measured.closing import _central, Closed, closed, DIFFERENCE, Free, shifted
+from isa_ros.analysis.measured.measurement import Measurement
+from isa_ros.analysis.signals.signals import Signal
+from isa_ros.errors import ParameterError
+import numpy as np
+import pytest
+
+T = np.arange(0.0, 3.0, 0.01)
+SWING = np.sin(2.0 * np.pi * 0.7 * T)
+
+
+def free(start: float = 1.0, size: float = 1.0) -> Free:
+    return Free('load.inertia', start, 0.1, 10.0, size, 'kg')
+
+
+def found_from(
+        monkeypatch: pytest.MonkeyPatch, machine: Callable[[float], np.ndarray],
+        true: np.ndarray) -> tuple[Closed, list[int]]:
+    """Return the parameter with which a machine comes closest, and the runs that were told."""
+    def played(run: Mapping[str, float], *given: object) -> dict[str, Signal]:
+        return {'position': Signal(T, machine(run['load.inertia']))}
+    monkeypatch.setattr(closing, 'changed', lambda run, name, values: values)
+    monkeypatch.setattr(closing, 'played', played)
+    runs: list[int] = []
+    found, = closed(None, 'ram', Measurement('m', {'position': Signal(T, true)}), [free()], 3.0,
+                    runs.append)
+    return found, runs
+
+
+def test_a_parameter_is_found_and_each_run_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, runs = found_from(monkeypatch, lambda m: m * SWING, 2.7 * SWING)
+    assert found.value == pytest.approx(2.7, rel=1e-6)
+    assert len(runs) > 3 and runs == list(range(1, len(runs) + 1))
+
+
+def test_the_search_leaves_values_that_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the first difference reaches into them: they are worse than the start."""
+    def machine(m: float) -> np.ndarray:
+        if m > 1.05:
+            raise ParameterError('load.inertia')
+        return m * SWING
+    assert found_from(monkeypatch, machine, 0.6 * SWING)[0].value == pytest.approx(0.6, rel=1e-3)
+
+
+def test_a_start_that_is_refused_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(m: float) -> np.ndarray:
+        raise ParameterError(f'load.inertia = {m:g}')
+    with pytest.raises(ParameterError, match='load.inertia = 1'):
+        found_from(monkeypatch, refused, SWING)
+
+
+@pytest.mark.parametrize(('value', 'size', 'half_width', 'expected'), [
+    (-4.0, 1.0, 1.9, True), (-4.0, 1.0, 2.1, False), (0.5, 2.0, 0.9, True),
+    (0.5, 2.0, 1.1, False)])
+def test_a_wide_interval_determines_nothing(
+        value: float, size: float, half_width: float, expected: bool) -> None:
+    """Half of it is compared with half the estimate, or half its size where this is larger."""
+    assert Closed(free(size=size), value, half_width).is_determined is expected
+
+
+def test_a_measurement_is_shifted_to_the_clock_of_its_commands() -> None:
+    """What comes late is moved back by the delay, a clock that is fast slowed."""
+    signal = Signal(np.array([0.0, 2.0]), np.array([3.0, 5.0]))
+    found = shifted(signal, {'clock_ppm': 500.0, 'delay_ms': 20.0})
+    assert found.t == pytest.approx([-0.02, 2.0 / 1.0005 - 0.02], abs=1e-12)
+    assert found.values is signal.values
+
+
+def test_differences_at_a_bound_are_one_sided() -> None:
+    """A line has its slope there too; a parabola leaves h^2 over where both sides are free."""
+    def of(theta: np.ndarray) -> np.ndarray:
+        return np.array([3.0 * theta[0] + theta[1] ** 2, -2.0 * theta[0]])
+    theta = np.array([5.0, 0.7])
+    slopes, rough = _central(of, theta, of(theta), np.array([0.0, 0.0]), np.array([5.0, 5.0]))
+    assert slopes == pytest.approx(np.array([[3.0, 1.4], [-2.0, 0.0]]), abs=1e-9)
+    assert rough[1] == pytest.approx([DIFFERENCE ** 2, 0.0], abs=1e-9)
