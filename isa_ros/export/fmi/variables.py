@@ -70,8 +70,3 @@ class Variable(NamedTuple):
     """The range of what may be set, None: any."""
     enumeration: str = ''
     """Key of `ENUMERATIONS`."""
-
-    @property
-    def is_settable(self) -> bool:
-        """Return whether its value may be given from outside."""
-        return self.home is Home.INPUT

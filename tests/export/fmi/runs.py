@@ -51,6 +51,7 @@ RUNS: Mapping[str, tuple[str, Any, str, Mapping[str, Any]]] = {
     'own_load': ('rig_linear', MOTIONS, 'ram', {}),
     'accumulator': ('rig_linear', MOTIONS, 'ram', {'supply': ACCUMULATOR}),
     'moving': ('rig_linear', MOTIONS, 'ram', {'supply': MOVING}),
+    'at_once': ('rig_linear', MOTIONS, 'ram', {'controller_offset_ms': 0.0}),
     'link': ('rig_linear', MOTIONS, 'ram', {'link': LINK}),
     'rotary': ('rig_rotary', 'step', 'rotor', {}),
     'port': (LEG, 'drop', 'kfe', {})}

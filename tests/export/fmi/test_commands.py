@@ -73,15 +73,24 @@ def test_every_input_has_the_effect_of_its_command(version, cases, tmp_path):
 
 
 def test_the_reference_of_pressure_is_taken_in_its_mode(tmp_path):
-    own = made(parts_of(choose('isa_v5', variants=['pressure_control'], load='own')), own_target())
+    chosen = choose('isa_v5', variants=['pressure_control'], load='own')
+    own = made(parts_of(chosen), own_target())
     (tmp_path / 'unit.fmu').write_bytes(archive(own, Version.FMI3))
-    unit = Unit(tmp_path / 'unit.fmu', tmp_path / 'unit')
-    unit.step(5)
-    unit.set({'mode': 3, 'reference': 1.5e6})
-    unit.step(10)
+    unit, simulation = Unit(tmp_path / 'unit.fmu', tmp_path / 'unit'), Simulation(idle(chosen.run))
+    name, = simulation.names
+    course = {5: ({'mode': 3, 'reference': 1.5e6}, {'mode': 'pressure', 'pressure': 1.5e6}),
+              15: ({'reference': -1.5e6}, {'pressure': -1.5e6})}
+    differences = []
+    for k in range(25):
+        values, command = course.get(k, ({}, None))
+        unit.set(values)
+        unit.step()
+        if command is not None:
+            simulation.command(name, **command)
+        simulation.step()
+        sample = simulation.observed[name]
+        expected = np.array([float(sample[field]) for field in SAMPLED])
+        assert unit.numbers([*SAMPLED]).tobytes() == expected.tobytes(), k
+        differences.append(unit.get('pressure_a') - unit.get('pressure_b'))
     assert unit.messages == [] and unit.get('device_mode') == 3
-    assert unit.get('force_reference') == 0.0
-    before = unit.get('pressure_a') - unit.get('pressure_b')
-    unit.set({'reference': -1.5e6})
-    unit.step(10)
-    assert unit.get('pressure_a') - unit.get('pressure_b') < before - 5e5
+    assert differences[4] + 5e5 < differences[14] > differences[24] + 5e5
