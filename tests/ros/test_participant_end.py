@@ -1,0 +1,45 @@
+"""Whose run an actuator takes part in, and what it looks at before a tick."""
+
+from collections.abc import Iterator
+
+from isa_ros.core.signals import START
+from isa_ros.run.wire.answers import AnswerKind
+from isa_ros.run.wire.steps import encode_hello
+import numpy as np
+import pytest
+from rclpy.node import Node
+from tests.ros.test_lockstep_strangers import done, Participant, Post, ROSTER, RUN, tick
+
+pytestmark = pytest.mark.ros
+
+
+@pytest.fixture
+def member(observer: Node) -> Iterator[Participant]:
+    """Return a participant in a run that has begun."""
+    node = Node('kfe', context=observer.context, enable_rosout=False,
+                start_parameter_services=False)
+    yield Participant(node)
+    node.destroy_node()
+
+
+@pytest.mark.parametrize(('n_coordinators', 'expected'), [
+    (1, AnswerKind.READY), (2, AnswerKind.BUSY)])
+def test_a_run_whose_coordinator_is_gone_is_left_for_another(
+        member, monkeypatch, n_coordinators, expected):
+    """The one that says hello is not counted; the other has sent just before."""
+    post = Post()
+    monkeypatch.setattr(post, 'count_senders', lambda: n_coordinators)
+    monkeypatch.setattr(member._end, '_mailbox', post)
+    hello = encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER)
+    (kind, _, is_repeated), = member.answers_to(hello)
+    assert (kind, is_repeated) == (expected, False)
+    assert member.answers_to(tick(0)) == ([done(0)] if expected is AnswerKind.BUSY else [])
+
+
+def test_what_has_arrived_is_taken_before_each_tick(member, monkeypatch):
+    """A setpoint takes effect at the next tick; a repeated step looks at nothing."""
+    served: list[int] = []
+    monkeypatch.setattr(member.role, 'serve', lambda: served.append(member.role.ticks))
+    assert member.answers_to(tick(0), tick(0), tick(1)) == [
+        done(0), done(0, is_repeated=True), done(1)]
+    assert served == [0, 1]
