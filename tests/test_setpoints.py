@@ -1,7 +1,7 @@
 """Setpoints of several actuators as arrays: the same commands as by name, refused alike."""
 
 from isa_ros.controller import Setpoint, Setpoints
-from isa_ros.core.signals import COMMAND, HAS_SETPOINT
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
 from isa_ros.requests import fill_requests
 import numpy as np
@@ -27,6 +27,17 @@ def test_they_are_the_commands_by_name(setpoints):
     assert rows.tobytes() == filled(by_name).tobytes()
     assert rows['kinds'][NAMES.index(setpoints.names[0])] == HAS_SETPOINT
     assert rows['kinds'][1 if 'haa' in setpoints.names else 0] == 0
+
+
+@pytest.mark.parametrize('setpoints', [
+    Setpoints(['hfe'], 0.03), {'hfe': Setpoint(0.03)}], ids=['as arrays', 'by name'])
+def test_a_setpoint_replaces_what_was_asked_of_its_actuator_before(setpoints):
+    """It does not enable what an earlier request would have; the others keep theirs."""
+    rows = np.zeros(3, COMMAND)
+    rows['kinds'] = HAS_ENABLE
+    fill_requests(setpoints, NAMES, rows)
+    assert rows['kinds'].tolist() == [HAS_ENABLE, HAS_SETPOINT, HAS_ENABLE]
+    assert rows['position'][1] == 0.03
 
 
 @pytest.mark.parametrize('setpoints, message', [

@@ -314,6 +314,18 @@ def test_the_device_speaks_on_change_and_once_a_second(packer, rows):
     assert (status.level, status.name, values['since_s']) == (b'\0', 'knee', '0.006500')
 
 
+def test_after_a_restored_state_every_device_speaks_once(packer):
+    """And the diagnostics with them; without a change and between full seconds."""
+    packer.rare.announce()
+    said = []
+    for t_ns in (T_NS, T_NS + 1_000_000):
+        packer.pack(t_ns, t_ns - 1_000_000, {})
+        found = everything(packer)
+        said.append([name for name in ('/hip/device', '/knee/device', '/diagnostics')
+                     if name in found])
+    assert said == [['/hip/device', '/knee/device', '/diagnostics'], []]
+
+
 def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
     """The same words, NaN and minus zero included."""
     rows.samples['velocity'] = np.nan, -0.0
