@@ -326,6 +326,17 @@ def test_after_a_restored_state_every_device_speaks_once(packer):
     assert said == [['/hip/device', '/knee/device', '/diagnostics'], []]
 
 
+def test_a_command_is_something_to_publish_when_it_is_sent_and_when_it_is_applied():
+    """Behind a link these are different ticks; each actuator's is its own."""
+    rows = some_rows()._replace(sent=np.zeros(2, COMMAND))
+    packer = Packer(Names([('hip', True), ('knee', False)], [HELD], linked=['hip', 'knee']), rows)
+    found = []
+    for of_knee in ((0, 0), (HAS_SETPOINT, 0), (0, HAS_ENABLE)):
+        rows.applied['kinds'][1], rows.sent['kinds'][1] = of_knee
+        found.append([packer.has_applied(row) for row in (0, 1)])
+    assert found == [[False, False], [False, True], [False, True]]
+
+
 def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
     """The same words, NaN and minus zero included."""
     rows.samples['velocity'] = np.nan, -0.0
