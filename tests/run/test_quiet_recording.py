@@ -3,6 +3,7 @@
 from isa_ros.bag.message_chunk import Room
 from isa_ros.run.packing import Names, Packer
 import numpy as np
+import pytest
 from tests.run.test_packing import HELD, some_rows
 
 
@@ -19,3 +20,15 @@ def test_a_recording_has_the_layout_room_and_stamps_that_were_asked_for():
     assert first.memory.packing.times[2] == 3_000_000_000
     assert packer.recording(clock, layouts[0], Room(buffer, 240, 80, 1)) is first
     assert first.memory.place.tolist() == [240, 80] and other.memory.place.tolist() == [100, 70]
+
+
+@pytest.mark.parametrize(('t_ms', 'step_ms', 'expected'), [
+    (0, 1, 999), (995, 1, 4), (999, 1, 0), (1000, 1, 999), (300, 300, 2), (900, 300, 0)])
+def test_ticks_are_quiet_until_one_reaches_a_full_second(t_ms, step_ms, expected):
+    """That one has a temperature; without one no tick has."""
+    def quiet_ticks(*heated: str) -> int:
+        packer = Packer(Names([('hip', True), ('knee', False)], [HELD], heated=heated),
+                        some_rows())
+        return packer.quiet_ticks(t_ms * 1_000_000, step_ms * 1_000_000)
+    assert quiet_ticks('knee') == expected
+    assert quiet_ticks() > 100_000
