@@ -129,3 +129,24 @@ def test_instances_in_threads_give_the_same(cases, tmp_path):
         return unit.state()
     with ThreadPoolExecutor(len(units)) as pool:
         assert len(set(pool.map(run, units))) == 1
+
+
+@pytest.mark.parametrize('version', Version)
+def test_the_description_has_the_tick_and_the_ranges_of_what_may_be_set(table, version):
+    from xml.etree import ElementTree as xml
+    from isa_ros.export.fmi.description import About
+    root = xml.fromstring(description(
+        About('one', 'isa_one', '0' * 32, 'a unit', 0.0005), table, version))
+    assert root.find('DefaultExperiment').get('stepSize') == '0.0005'
+    assert root.find('CoSimulation').get('fixedInternalStepSize') == (
+        '0.0005' if version is Version.FMI3 else None)
+    given = {one.get('name'): one if version is Version.FMI3 else one[0]
+             for one in root.find('ModelVariables')}
+    for own in table:
+        if own.home is Home.INPUT and own.kind is Type.REAL:
+            found = given[own.name]
+            assert found.get('start') == repr(own.start), own.name
+            assert (found.get('min'), found.get('max')) == tuple(
+                None if bound is None else repr(bound) for bound in (own.low, own.high)), own.name
+    assert given['setpoint.position'].get('max') == '0.1'
+    assert (given['mode'].get('min'), given['mode'].get('max')) == ('1', '6')
