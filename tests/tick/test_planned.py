@@ -1,10 +1,12 @@
 """Commands of a source that knows them in advance, as kernels take them."""
 
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.scripting.run import load
 from isa_ros.tick.planned import MOST, PlannedCommands
 from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
+from tests.tick.test_quiet import begun
 
 
 class Motion:
@@ -80,3 +82,13 @@ def test_a_source_is_planned_until_it_has_more_than_commands():
     assert source.planned_until(91) == float('inf')
     assert source.quiet_until(50) == 50
     assert ScheduledSource(lambda tick, out: None).planned_until(4) == 4
+
+
+def test_after_planned_commands_none_are_expected():
+    """Else each call would end at its first tick."""
+    simulation, _ = begun(load('rig_linear'))
+    for _ in range(3):
+        simulation.loop.advance()
+    simulation.loop._quiet._plan.expected[:] = True
+    simulation.loop.advance_quietly(30)
+    assert simulation.ticks == 30

@@ -1,6 +1,7 @@
 """One tick: who commands, in which order rows are given out, and where a run can go on."""
 
 from collections.abc import Mapping
+from types import SimpleNamespace
 
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.controller import Controller, Setpoint, State
@@ -10,6 +11,7 @@ from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 from isa_ros.tick.exchange import Rows, RowSink
+from isa_ros.tick.quiet import Ended
 from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
@@ -110,6 +112,42 @@ def test_sinks_get_the_time_first_and_the_rows_when_all_have_advanced():
         ('time', 1, 0), ('record', 0), ('rows', 1, 1),
         ('pause', 1), ('time', 2, 1), ('record', 1), ('rows', 2, 2),
         ('end of all', 2), ('end',)]
+
+
+@pytest.mark.parametrize(('ended', 'ticks', 'given'), [
+    (Ended.FULL, 4, []), (Ended.SEEN, 5, ['time', 'rows']), (Ended.BEGUN, 5, ['time', 'rows'])])
+def test_after_quiet_ticks_the_sinks_get_the_tick_that_ended_them(
+        monkeypatch, ended, ticks, given):
+    """Its time, and its rows; the three before it they have kept by kernels."""
+    simulation = Simulation(idle(RUN))
+    loop, sink = simulation.loop, Noting(simulation)
+    loop.begin()
+    loop.advance()
+    loop.sinks = (sink,)
+    received: list[Rows] = []
+    monkeypatch.setattr(loop, '_quiet_now', lambda: SimpleNamespace(run=lambda *_: (3, ended)))
+    monkeypatch.setattr(loop.transport, 'receive', received.append)
+    loop.advance_quietly(9)
+    assert loop.ticks == ticks
+    assert [own[:2] for own in sink.log] == [(what, 5) for what in given]
+    assert len(received) == (ended is Ended.BEGUN)
+
+
+def test_quiet_ticks_are_of_the_ends_that_the_transport_has_now(monkeypatch):
+    """Another run over sockets has others; none while a parameter changes, or without any."""
+    loop = Simulation(idle(RUN)).loop
+    monkeypatch.setattr(loop, 'stops', None)
+    monkeypatch.setattr(loop, '_surroundings', SimpleNamespace(
+        is_settled=True, parts=lambda *rows: ((), ())))
+    made = []
+    for is_settled in (True, True, False):
+        ends = SimpleNamespace(parts=(), is_settled=is_settled)
+        monkeypatch.setattr(loop, 'transport', SimpleNamespace(is_quiet=True, ends=ends))
+        made.append(loop._quiet_now())
+        assert made[-1] is None or made[-1].ends is ends
+    assert made[0] is not None and made[1] is not None and made[2] is None
+    monkeypatch.setattr(loop, 'transport', SimpleNamespace(is_quiet=True, ends=None))
+    assert loop._quiet_now() is None
 
 
 def test_what_the_source_changes_is_in_force_in_its_tick_and_given_out_after_it():
