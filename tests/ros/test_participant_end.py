@@ -1,6 +1,7 @@
 """Whose run an actuator takes part in, and what it looks at before a tick."""
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 from isa_ros.core.signals import START
 from isa_ros.run.wire.answers import AnswerKind
@@ -43,3 +44,14 @@ def test_what_has_arrived_is_taken_before_each_tick(member, monkeypatch):
     assert member.answers_to(tick(0), tick(0), tick(1)) == [
         done(0), done(0, is_repeated=True), done(1)]
     assert served == [0, 1]
+
+
+def test_only_a_tick_that_was_executed_is_left_to_the_loop(member, monkeypatch):
+    """After one that was refused, the next is checked by Python again."""
+    learned: list[object] = []
+    monkeypatch.setattr(member._end, '_ticks', SimpleNamespace(
+        publish_kept=lambda: None, forget=lambda: learned.append('forgotten'),
+        expect=lambda step, index: learned.append((step.tick, index))))
+    assert member.answers_to(tick(0), tick(7), tick(1)) == [
+        done(0), (AnswerKind.REFUSED, 7, False), done(1)]
+    assert learned == [(0, 1), 'forgotten', (1, 1)]
