@@ -73,6 +73,7 @@ def _places(own: Exported, layout: Layout) -> Iterator[str]:
             ('COMMAND', ticked.commands), ('FEED', memory.feeds),
             ('REPLY', memory.replies), ('FED', memory.fed), ('APPLIED', memory.applied),
             ('SAMPLE', memory.observed), ('OWN_SAMPLE', memory.samples),
+            ('LOAD_POSITION', memory.continuous['load']['position']),
             ('MODE', memory.reu['status']['requested_mode']),
             ('SETPOINT_POSITION', memory.reu['setpoint']['position']))),
         ('PLANT_STEP_NS', PLANT_STEP_NS),

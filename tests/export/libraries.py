@@ -93,6 +93,11 @@ class Instance:
         """Return its time."""
         return self.loaded.call('time_ns', self.memory, result=ctypes.c_int64)
 
+    @property
+    def load_position(self):
+        """Return where its load is."""
+        return self.loaded.call('load_position', self.memory, result=ctypes.c_double)
+
     def save(self):
         """Return its state."""
         state = np.zeros(self.loaded.size('state_size'), np.uint8)

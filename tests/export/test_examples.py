@@ -14,7 +14,7 @@ from tests.export.libraries import written
 
 pytestmark = pytest.mark.slow
 
-ACTUATORS = {'isa_v5': {}, 'rig_linear': {}, 'leg:haa': {}}
+ACTUATORS = {'isa_v5': {}, 'rig_linear': {}, 'leg:haa': {}, 'leg:kfe': {}}
 STRICT = ('-Wall', '-Wextra', '-Wpedantic', '-Werror')
 
 
@@ -71,6 +71,11 @@ def actuator_of(own):
     return actuator
 
 
+def place_of(actuator):
+    """Return where the load of an actuator is."""
+    return float(actuator.memory.continuous['load']['position'][0])
+
+
 def port_of(own, position, velocity=0.0, inverse_mass=0.0):
     """Return the `LOAD_PORT` of a load at a place."""
     port = np.zeros(1, LOAD_PORT)[0]
@@ -84,7 +89,7 @@ def test_all_samples_of_the_example_in_c(made):
     own, directory = made
     found, printed = samples_of(built(directory, 'example.c'), directory)
     actuator, start = actuator_of(own), float(own.start['position'][0])
-    mass = Mass(0.5 if actuator.is_rotary else 50.0, start)
+    mass = Mass(0.5 if actuator.is_rotary else 50.0, place_of(actuator))
     step = 0.1 if actuator.is_rotary else 0.005
     expected = [actuator.sample.copy()]
     for k in range(1000):
@@ -109,11 +114,12 @@ def test_all_samples_of_the_example_in_cpp(made):
     for sign in (1.0, -1.0):
         actuator = actuator_of(own)
         step = 0.02 if actuator.is_rotary else 0.001
+        place = place_of(actuator)
         expected.append(actuator.sample.copy())
         for k in range(500):
             if k == 100:
                 actuator.accept(setpoint(start + sign * step))
-            actuator.tick(port_of(own, start))
+            actuator.tick(port_of(own, place))
             expected.append(actuator.sample.copy())
     assert len(found) == 1002 and np.array(expected).tobytes() == found.tobytes()
     assert found[500].tobytes() != found[1001].tobytes()

@@ -31,9 +31,9 @@ pytestmark = pytest.mark.slow
 NO_INSTANCE, NOT_FINITE, BEYOND_RANGE, UNKNOWN_KIND, UNKNOWN_MODE, WRONG_MODE = range(-1, -7, -1)
 PRESSURES, WRONG_SIZE, WRONG_STATE = -7, -8, -9
 FUNCTIONS = (
-    'about', 'applied', 'create', 'fed', 'field', 'field_count', 'find', 'message', 'parameter',
-    'parameter_count', 'reply', 'restore', 'sample', 'save', 'size', 'start', 'state_size',
-    'tick', 'time_ns')
+    'about', 'applied', 'create', 'fed', 'field', 'field_count', 'find', 'load_position',
+    'message', 'parameter', 'parameter_count', 'reply', 'restore', 'sample', 'save', 'size',
+    'start', 'state_size', 'tick', 'time_ns')
 WARNINGS = ('-Wall', '-Wextra', '-Wpedantic', '-Werror')
 
 
@@ -268,6 +268,7 @@ def test_no_instance(loaded):
     for name in ('sample', 'reply', 'fed', 'applied'):
         assert loaded.call(name, None, result=ctypes.c_void_p) is None
     assert loaded.call('time_ns', None, result=ctypes.c_int64) == 0
+    assert np.isnan(loaded.call('load_position', None, result=ctypes.c_double))
 
 
 def started(chosen, *start):
@@ -297,6 +298,30 @@ def test_starts(loaded):
     assert instance.tick(given) == 0
     expected.tick(given)
     assert instance.sample.tobytes() == expected.sample.tobytes()
+
+
+def test_a_start_with_a_force_stays_at_rest_where_its_load_is(loaded):
+    """The load is behind the spring of the sensor; the first tick has the force that is held."""
+    stiffness = parameter(loaded.call(
+        'find', b'plant.mechanics.sensor_stiffness', result=ctypes.c_void_p)).number
+    instance, jolted = Instance(loaded), Instance(loaded)
+    for each in (instance, jolted):
+        assert each.start(0.03, 700.0, 20.7e6, 0.0) == 0
+    place = instance.load_position
+    assert place == 0.03 - 700.0 / stiffness and 0.03 - place > 1e-6
+    assert instance.tick(port(x0=place)) == jolted.tick(port(x0=0.03)) == 0
+    assert abs(instance.reply['mean_forces'][0] - 700.0) < 10.0
+    assert abs(jolted.reply['mean_forces'][0] - 700.0) > 200.0
+    assert instance.load_position == place
+
+
+def test_the_load_moves_as_its_port_says(loaded):
+    instance = Instance(loaded)
+    assert instance.load_position == 0.05
+    assert instance.tick(port(v0=0.02)) == 0
+    assert abs(instance.load_position - 0.05002) < 1e-12
+    assert instance.tick(port(x0=0.05002, a_bias=3.0)) == 0
+    assert abs(instance.load_position - 0.0500215) < 1e-12
 
 
 def test_only_a_load_of_its_own_needs_no_port(loaded, tmp_path):

@@ -115,6 +115,13 @@ def test_every_row_of_every_tick_is_the_same(case):
     assert instance.t_ns == 600_000_000 and len(case.captured.ticks) == 600
 
 
+def test_the_load_of_the_first_port_is_where_the_start_has_it(case):
+    """To the rounding of a difference: a body says where it is, a start where its piston is."""
+    if case.captured.ticks[0].port['x0'] != 0.0:
+        place = Instance(case.loaded).load_position
+        assert abs(place - case.captured.ticks[0].port['x0']) <= 1e-15
+
+
 def test_the_run_moves(case):
     """Otherwise equal samples would say little."""
     samples = np.array(case.captured.samples)

@@ -180,6 +180,14 @@ ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_
   return (int)self->diverged;
 }
 
+ISA_EXPORT double ISA(load_position)(const @NAME@_t *self)
+{
+  double position;
+  if (!self) return NAN;
+  copy(&position, self->block + AT_LOAD_POSITION, sizeof position);
+  return position;
+}
+
 ISA_EXPORT const isa_sample_t *ISA(sample)(const @NAME@_t *self)
 {
   return AT(isa_sample_t, self, AT_SAMPLE);

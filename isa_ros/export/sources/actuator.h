@@ -49,9 +49,12 @@ enum isa_kind {
 
 @ENUMERATIONS@
 
-/* The state in which an actuator begins, at rest. */
+/*
+ * The state in which an actuator begins, at rest. With a force its load is not at its position, but
+ * where ..._load_position() says: the spring between them, of the force sensor, is loaded.
+ */
 typedef struct isa_start {
-  double position;         /* m | rad */
+  double position;         /* of piston or rotor, m | rad */
   double force;            /* that it holds, of its sensor, N | Nm */
   double supply_pressure;  /* Pa gauge */
   double return_pressure;  /* Pa gauge */
@@ -68,7 +71,7 @@ typedef struct isa_start {
  * a load of its own (isa_about.has_own_load) reads the pressures only.
  */
 typedef struct isa_port {
-  double x0;               /* position of the load, m | rad */
+  double x0;               /* position of the load, m | rad; at first its load_position() */
   double v0;               /* its speed, m/s | rad/s */
   double a0;               /* acceleration of x_r, m/s2 | rad/s2 */
   double inverse_mass;     /* 1/kg | 1/(kg m2) */
@@ -202,6 +205,12 @@ int @NAME@_start(@NAME@_t *self, const isa_start_t *start);
  */
 int @NAME@_tick(@NAME@_t *self, const isa_port_t *port, const isa_feed_t *feed,
                 const isa_command_t *command);
+
+/*
+ * Where the load is at the end of the last tick, by its equation of motion, m | rad: after a start
+ * the x0 of the first port, start.position - start.force / sensor stiffness. NaN without instance.
+ */
+double @NAME@_load_position(const @NAME@_t *self);
 
 /* At the end of the last tick; the memory is that of the instance, the next tick overwrites it. */
 const isa_sample_t *@NAME@_sample(const @NAME@_t *self);

@@ -46,11 +46,12 @@ int main(int argc, char **argv)
   const double tick = 1e-9 * (double)about->step_ns;
   const long ticks = (long)(1000000000 / about->step_ns);
   const double step = about->is_rotary ? 0.1 : 0.005;
-  struct mass load = {about->is_rotary ? 0.5 : 50.0, about->start.position, 0.0};
+  struct mass load = {about->is_rotary ? 0.5 : 50.0, 0.0, 0.0};
   FILE *file = argc > 1 ? fopen(argv[1], "wb") : NULL;
   @NAME@_t *actuator = @NAME@_create(malloc(@NAME@_size()), @NAME@_size());
   void *state = malloc(@NAME@_state_size());
   if (!actuator || !state || (argc > 1 && !file)) return 1;
+  load.position = @NAME@_load_position(actuator);
 
   printf("%s, model %s, isa_ros %s, %d parameters\n", about->name, about->model, about->version,
          @NAME@_parameter_count());

@@ -26,6 +26,7 @@ class Actuator {
     if (code) throw std::runtime_error(std::string("@NAME@: ") + @NAME@_message(code));
   }
 
+  double load_position() const { return @NAME@_load_position(self_); }
   const isa_sample_t &sample() const { return *@NAME@_sample(self_); }
 
   std::vector<unsigned char> save() const {
@@ -56,7 +57,7 @@ static std::vector<isa_sample_t> run(double step) {
   Actuator actuator;
   std::vector<isa_sample_t> samples(1, actuator.sample());
   isa_port_t port = isa_port_t();
-  port.x0 = about.start.position;
+  port.x0 = actuator.load_position();
   port.supply_pressure = about.start.supply_pressure;
   port.return_pressure = about.start.return_pressure;
   for (long k = 0; k < ticks; k++) {
