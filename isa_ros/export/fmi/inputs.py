@@ -19,7 +19,8 @@ from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 PORT_FIELDS: Mapping[str, tuple[str, str, str]] = {
-    'x0': ('position', 'm | rad', 'of the load at the begin of the step'),
+    'x0': ('position', 'm | rad',
+           'of the load at the begin of the step; until it is set that of the start'),
     'v0': ('velocity', 'm/s | rad/s', 'of the load at the begin of the step'),
     'a0': ('acceleration', 'm/s2 | rad/s2',
            'of the reference motion of port.stiffness and port.damping'),
@@ -34,7 +35,7 @@ PORT_FIELDS: Mapping[str, tuple[str, str, str]] = {
 assert tuple(PORT_FIELDS) == (LOAD_PORT.names or ())[:len(PORT_FIELDS)]
 
 SETPOINT = (
-    ('position', 'm | rad', 'that piston or rotor is to have'),
+    ('position', 'm | rad', 'that piston or rotor is to have; until it is set start.position'),
     ('velocity', 'm/s | rad/s', 'that it is to have there'),
     ('effort', 'N | Nm', 'feed-forward; in mode force the setpoint'),
     ('stiffness', 'N/m | Nm/rad', 'of the impedance'),
@@ -84,9 +85,15 @@ def _command(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
 def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
     is_rotary = config.sheet.is_rotary
     for field, (name, unit, meaning) in PORT_FIELDS.items():
-        value = float(start['position']) if field == 'x0' else 0.0
+        value = _load_position(config, start) if field == 'x0' else 0.0
         yield _input(
             f'port.{name}', Type.REAL, meaning, of_coordinate(unit, is_rotary), value)
+
+
+def _load_position(config: ActuatorConfig, start: np.void) -> float:
+    """Return where the load is at the start: its force deflects the sensor  (S1), m or rad."""
+    stiffness = config.sheet.plant.mechanics.sensor_stiffness
+    return float(start['position'] - start['force'] / stiffness)
 
 
 def _start(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:

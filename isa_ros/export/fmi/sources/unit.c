@@ -49,6 +49,18 @@ void unit_begin_supply(unit_t *unit)
                                         : WORDS[k].value;
 }
 
+/* Let positions that were not written be those of the actuator at rest: no force jumps. */
+static void follow_start(unit_t *unit)
+{
+  struct given *given = &unit->given;
+  if (!given->is_new[IN_SETPOINT_POSITION])
+    given->inputs[IN_SETPOINT_POSITION] = given->inputs[IN_START_POSITION];
+#if HAS_PORT
+  if (!given->is_new[IN_PORT_POSITION])
+    given->inputs[IN_PORT_POSITION] = ISA(number)(unit->actuator, LOAD_POSITION);
+#endif
+}
+
 /* Put actuator and supply at rest as the parameters say. */
 static enum status start(unit_t *unit)
 {
@@ -58,7 +70,9 @@ static enum status start(unit_t *unit)
   const isa_start_t at = {inputs[IN_START_POSITION], inputs[IN_START_FORCE], supply->pressure,
                           supply->return_pressure};
   const int code = ISA(start)(unit->actuator, &at);
-  return code ? unit_say(unit, STATUS_ERROR, ISA(message)(code)) : STATUS_OK;
+  if (code) return unit_say(unit, STATUS_ERROR, ISA(message)(code));
+  follow_start(unit);
+  return STATUS_OK;
 }
 
 static void set_default(unit_t *unit)
