@@ -99,12 +99,9 @@ def latch(pending, reu, applied):
 
 
 @kernel
-def lose_pending(pending, reu, applied):
-    """Drop the pending command: a program that has stopped takes none."""
-    applied.kinds = 0
-    if pending.kinds & (HAS_SETPOINT | HAS_REFERENCE):
-        reu.status.unused_setpoints += 1
-    pending.kinds = 0
+def lose_pending(pending, applied):
+    """Drop the pending command: a program that has stopped takes none, and counts none."""
+    applied.kinds = pending.kinds = 0
 
 
 @kernel

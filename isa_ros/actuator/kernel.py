@@ -217,7 +217,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         link = n if memory.constants[n].link.is_on else -1
         merge(commands[n], memory.pending[n])
         if link < 0 and memory.constants[n].reu.is_frozen:
-            lose_pending(memory.pending[n], reu, memory.applied[n])
+            lose_pending(memory.pending[n], memory.applied[n])
         elif link < 0:
             latch(memory.pending[n], reu, memory.applied[n])
         else:

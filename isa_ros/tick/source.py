@@ -73,17 +73,18 @@ class ScheduledSource:
             next_command: Callable[[int], float] | None = None) -> None:
         self.commands, self.changes, self._events = commands, changes.get, events
         self._next_command = next_command
-        self._others = sorted({*changes, *events})
+        # an event is written with the messages of the tick before, which kernels do not do
+        self._others = sorted({*changes, *events, *(tick - 1 for tick in events)})
 
     def quiet_until(self, tick: int) -> float:
-        """Return the first tick from ``tick`` on with a command, a change or an event."""
+        """Return the first tick from ``tick`` on with a command, a change or an event after it."""
         if self._next_command is None:
             return tick
         return min(self._next_command(tick), self.planned_until(tick))
 
     def planned_until(self, tick: int) -> float:
         """
-        Return the first tick from ``tick`` on with a change or an event.
+        Return the first tick from ``tick`` on with a change, or an event before or after it.
 
         Commands of the ticks before may be asked for in advance. It is ``tick`` itself where that
         is not known.

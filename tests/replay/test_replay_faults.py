@@ -87,6 +87,20 @@ def test_what_is_recorded_is_what_changed_at_its_tick(tmp_path):
     assert inputs.tuned_supplies == {30: {'pump.pump_flow_lpm': 0.0}}
 
 
+def test_a_setpoint_that_a_frozen_program_does_not_take_replays(tmp_path):
+    """It is in no message, so that nothing may count it; those before and behind it are."""
+    tree: Tree = {'name': 'frozen', 'duration_s': 0.1, 'tracks': {'ram': [
+        {'t_s': 0.0, 'position': 'hold', 'stiffness': 1e5, 'damping': 4000.0},
+        *({'t_s': t_s, 'position': 0.05 + 0.01 * t_s} for t_s in (0.01, 0.04, 0.08))]},
+        'faults': [{'t_s': 0.02, 'actuator': 'ram', 'set': {'reu.frozen': 1.0}, 'until_s': 0.06}]}
+    run = load('rig_linear', tree)
+    result = run.simulate()
+    bag = result.save(tmp_path / 'bag')
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+    assert sorted(recorded_inputs(Bag(bag), run.configuration).commands) == [0, 10, 80]
+    assert result['ram.unused_setpoints'][[60, 100]].tolist() == [0.0, 1.0]     # it has tripped
+
+
 def test_ramps_and_intermittent_faults_replay_and_continue_byte_for_byte(tmp_path):
     """With every value recorded at its tick; a run saved in the middle goes on in it."""
     scenario = idle(RUN, 0.1).with_faults([

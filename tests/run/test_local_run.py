@@ -1,6 +1,7 @@
 """A whole run in this process: what is fed into it is recorded at its tick."""
 
 from dataclasses import replace
+import math
 
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.core.signals import Records
@@ -70,6 +71,14 @@ def test_events_are_recorded_before_their_tick():
     assert {k: [event.text(data) for data in sample['/coordinator/events']]
             for k, sample in samples.items() if '/coordinator/events' in sample} == {
                 0: ['pause', 'step 1'], 4: ['reset']}
+
+
+@pytest.mark.parametrize('at', [1, 2, 3, 17])
+def test_an_event_behind_quiet_ticks_is_recorded_before_its_tick(at):
+    """A pause that was recorded has the instant at which the run stood."""
+    source = Scheduled(nothing, events={at: ['pause']}, next_command=lambda tick: math.inf)
+    samples = recorded(source, 20).samples
+    assert [k for k, sample in samples.items() if '/coordinator/events' in sample] == [at]
 
 
 def test_it_records_what_the_run_wants_recorded():

@@ -229,7 +229,9 @@ def test_a_source_says_until_when_it_has_nothing():
         lambda tick, rows: None, {7: ParameterChanges({}, {})}, {3: ['x'], 12: ['y']},
         lambda tick: 9 if tick <= 9 else math.inf)
     assert [source.quiet_until(tick) for tick in (0, 3, 4, 8, 10, 13)] == [
-        3, 3, 7, 9, 12, math.inf]
+        2, 3, 7, 9, 11, math.inf]
+    assert [source.planned_until(tick) for tick in (0, 3, 4, 8, 12, 13)] == [
+        2, 3, 7, 11, 12, math.inf]
     assert ScheduledSource(lambda tick, rows: None).quiet_until(5) == 5
 
 
