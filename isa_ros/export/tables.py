@@ -7,6 +7,8 @@ from typing import Any
 from isa_ros.actuator.integration import state_name, STATE_SIZE
 from isa_ros.actuator.setpoint_range import (
     Bounds, LIMIT, positions, reference_bounds, setpoint_bounds)
+from isa_ros.config.runs.external_config import held_forces
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.device import MODES
 from isa_ros.core.fields import units_of
 from isa_ros.core.saved_state import MAX_TICKS
@@ -110,12 +112,16 @@ def _setpoints(own: Exported) -> Iterator[str]:
         *(_bounds(references.get(mode, _EVERYTHING), f'reference, mode {name}')
           for mode, name in enumerate(MODES))])
     low, high, _, _ = positions(sheet)
+    pulled, pushed = held_forces(config)
+    force = float(own.start['force'][0])    # a run file may begin with more
     yield from _defined([
         ('EVERY_KIND', EVERY_KIND),
         ('REFERENCES', sum(1 << mode for mode in references)),
         ('POSSIBLE_MODES', sum(1 << mode for mode in possible_modes(sheet.reu))),
         ('LIMITS', int(config.beyond_range == LIMIT)),
-        ('POSITION_LOW', number(low)), ('POSITION_HIGH', number(high))])
+        ('POSITION_LOW', number(low)), ('POSITION_HIGH', number(high)),
+        ('FORCE_LOW', number(min(pulled, force))), ('FORCE_HIGH', number(max(pushed, force))),
+        ('VACUUM', number(-ATMOSPHERE))])
 
 
 def _bounds(bounds: Bounds, what: str) -> str:

@@ -287,6 +287,10 @@ def test_starts(loaded):
         assert instance.start(*numbers) == NOT_FINITE
     assert instance.start(-1e-9, 0.0, 20e6, 0.0) == BEYOND_RANGE
     assert instance.start(0.1 + 1e-9, 0.0, 20e6, 0.0) == BEYOND_RANGE
+    for force in (-5500.0, 7988.0, 1e9, -1e300):
+        assert instance.start(0.05, force, 20e6, 0.0) == BEYOND_RANGE
+    assert instance.start(0.05, 0.0, 20e6, -101326.0) == BEYOND_RANGE
+    assert instance.start(0.05, 0.0, -101326.0, -101325.0) == BEYOND_RANGE
     assert instance.start(0.05, 0.0, 1e5, 1.1e5) == PRESSURES
     assert instance.save().tobytes() == before
     assert instance.start(0.1, 0.0, 1e5, 1e5) == 0 and instance.start(0.0, 0.0, 2e7, 0.0) == 0
@@ -347,6 +351,15 @@ def test_the_configured_start_may_be_beyond_the_stroke(tmp_path):
     assert abs(instance.sample['position'] - (0.1 + 1e-5)) < 1e-6
     assert instance.start(*own.start[0].item()) == BEYOND_RANGE
     assert instance.tick(port(x0=0.1)) == 0
+
+
+def test_the_configured_force_may_be_beyond_the_relief_valves(tmp_path):
+    own = exported(choose('isa_v5'))
+    own.start['force'] = 8100.0
+    instance = Instance(Loaded(written(own, tmp_path), 'isa_v5'))
+    assert instance.start(0.05, 8100.0, 20.7e6, 0.0) == 0
+    assert instance.start(0.05, 8101.0, 20.7e6, 0.0) == BEYOND_RANGE
+    assert instance.start(0.05, -5500.0, 20.7e6, 0.0) == BEYOND_RANGE
 
 
 @pytest.mark.parametrize('given, code', [
@@ -421,6 +434,31 @@ def test_ports_are_finite(loaded, field):
     assert instance.tick(port(**{field: -np.inf})) == NOT_FINITE
     assert bytes(instance.memory) == before
     assert instance.tick(port()) == 0
+
+
+@pytest.mark.parametrize('given', [
+    {'inverse_mass': -1e-9}, {'supply_pressure': -101326.0}, {'return_pressure': -1e6}])
+def test_ports_that_no_load_or_supply_has(loaded, given):
+    instance = Instance(loaded)
+    before = bytes(instance.memory)
+    assert instance.tick(port(**given)) == BEYOND_RANGE
+    assert bytes(instance.memory) == before
+    assert instance.tick(port(inverse_mass=0.02, return_pressure=-101325.0)) == 0
+
+
+def test_forces_of_a_start_are_those_of_python(loaded, own):
+    """The ends of the range that `Run.actuators` has; those of an ISA v5 are not symmetric."""
+    from isa_ros.config.runs.external_config import held_forces, refuse_force
+    config, instance = own.chosen.config, Instance(loaded)
+    low, high = held_forces(config)
+    assert (round(low), round(high)) == (-5499, 7987)
+    for force, beyond in ((low, -np.inf), (high, np.inf)):
+        refuse_force(config, force)
+        assert instance.start(0.05, force, 20.7e6, 0.0) == 0
+        outside = float(np.nextafter(force, beyond))
+        assert instance.start(0.05, outside, 20.7e6, 0.0) == BEYOND_RANGE
+        with pytest.raises(ConfigError, match='relief valves open'):
+            refuse_force(config, outside)
 
 
 def test_feeds_are_finite(loaded):

@@ -182,16 +182,21 @@ def imported_factory(maker: str, where: str, what: str = 'function') -> BodyFact
     return checked
 
 
-def refuse_force(own: ActuatorConfig, force: float) -> None:
-    """Raise `ConfigError` if the relief valves would open under a force, N | Nm."""
+def held_forces(own: ActuatorConfig) -> tuple[float, float]:
+    """Return the forces, N | Nm, between which an actuator holds with its relief valves closed."""
     plant = plant_record(sound(own.sheet.plant))[0]
     opening = ratings_of(plant).opening_pressure
-    pulled, pushed = opening * plant.chambers.area_b, opening * plant.chambers.area_a
-    if not -pulled <= force <= pushed:
+    return float(-opening * plant.chambers.area_b), float(opening * plant.chambers.area_a)
+
+
+def refuse_force(own: ActuatorConfig, force: float) -> None:
+    """Raise `ConfigError` if the relief valves would open under a force, N | Nm."""
+    low, high = held_forces(own)
+    if not low <= force <= high:
         unit = 'Nm' if own.sheet.is_rotary else 'N'
         raise ConfigError(
-            f'{own.name} starts with a force of {force:g} {unit}, must be {-pulled:.4g} to '
-            f'{pushed:.4g} {unit}, at which its relief valves open')
+            f'{own.name} starts with a force of {force:g} {unit}, must be {low:.4g} to '
+            f'{high:.4g} {unit}, at which its relief valves open')
 
 
 def refuse_start(own: ActuatorConfig, place: float, where: str = '') -> None:

@@ -77,7 +77,10 @@ static int check_start(const isa_start_t *start)
   if (!isfinite(start->position) || !isfinite(start->force) || !isfinite(start->supply_pressure) ||
       !isfinite(start->return_pressure))
     return ISA_NOT_FINITE;
-  if (start->position < POSITION_LOW || start->position > POSITION_HIGH) return ISA_BEYOND_RANGE;
+  if (start->position < POSITION_LOW || start->position > POSITION_HIGH ||
+      start->force < FORCE_LOW || start->force > FORCE_HIGH ||
+      start->supply_pressure < VACUUM || start->return_pressure < VACUUM)
+    return ISA_BEYOND_RANGE;
   return start->supply_pressure < start->return_pressure ? ISA_PRESSURES : ISA_OK;
 }
 
@@ -159,18 +162,26 @@ static int are_finite(const void *values, size_t bytes)
   return 1;
 }
 
+/* Return 0, or why a port cannot be taken. */
+static int check_port(const isa_port_t *port)
+{
+  if (!are_finite(port, sizeof *port)) return ISA_NOT_FINITE;
+  return port->inverse_mass < 0.0 || port->supply_pressure < VACUUM ||
+         port->return_pressure < VACUUM ? ISA_BEYOND_RANGE : ISA_OK;
+}
+
 ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_t *feed,
                          const isa_command_t *command)
 {
   static const isa_command_t none;
   static const isa_feed_t held;
   isa_command_t own = command ? *command : none;
-  int code;
+  int code = ISA_OK;
   if (!self || !(port || HAS_OWN_LOAD)) return ISA_NO_INSTANCE;
   if (self->diverged) return (int)self->diverged;
-  if ((port && !are_finite(port, sizeof *port)) || (feed && !are_finite(feed, sizeof *feed)))
-    return ISA_NOT_FINITE;
-  code = check_command(self, &own);
+  if (port) code = check_port(port);
+  if (!code && feed && !are_finite(feed, sizeof *feed)) code = ISA_NOT_FINITE;
+  if (!code) code = check_command(self, &own);
   if (code) return code;
   copy(self->block + AT_PORT, port ? (const void *)port : self->block + AT_PORT_IN_FORCE,
        sizeof *port);
@@ -324,7 +335,7 @@ ISA_EXPORT const char *ISA(message)(int code)
     case ISA_OK: return "done";
     case ISA_NO_INSTANCE: return "the instance, or a pointer that is needed, is NULL";
     case ISA_NOT_FINITE: return "a number is not finite";
-    case ISA_BEYOND_RANGE: return "a setpoint or a position is beyond its range";
+    case ISA_BEYOND_RANGE: return "a number of the setpoint, start or port is beyond its range";
     case ISA_UNKNOWN_KIND: return "kinds or is_enabled of the command do not exist";
     case ISA_UNKNOWN_MODE: return "the actuator does not have this mode";
     case ISA_WRONG_MODE: return "the reference is not of the mode in force";

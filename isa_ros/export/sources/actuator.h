@@ -27,7 +27,7 @@ enum isa_code {
   ISA_OK = 0,
   ISA_NO_INSTANCE = -1,    /* the instance, or a pointer that is needed, is NULL */
   ISA_NOT_FINITE = -2,     /* a number is NaN or infinite */
-  ISA_BEYOND_RANGE = -3,   /* a number of a setpoint, or a position, is beyond its range */
+  ISA_BEYOND_RANGE = -3,   /* a number of a setpoint, start or port is beyond its range */
   ISA_UNKNOWN_KIND = -4,   /* bits of a command, or its is_enabled, that do not exist */
   ISA_UNKNOWN_MODE = -5,   /* a mode that does not exist, or that this actuator does not have */
   ISA_WRONG_MODE = -6,     /* a reference of another mode than the one in force */
@@ -55,7 +55,7 @@ enum isa_kind {
  */
 typedef struct isa_start {
   double position;         /* of piston or rotor, m | rad */
-  double force;            /* that it holds, of its sensor, N | Nm */
+  double force;            /* that it holds with relief valves closed, of its sensor, N | Nm */
   double supply_pressure;  /* Pa gauge */
   double return_pressure;  /* Pa gauge */
 } isa_start_t;
@@ -74,7 +74,7 @@ typedef struct isa_port {
   double x0;               /* position of the load, m | rad; at first its load_position() */
   double v0;               /* its speed, m/s | rad/s */
   double a0;               /* acceleration of x_r, m/s2 | rad/s2 */
-  double inverse_mass;     /* 1/kg | 1/(kg m2) */
+  double inverse_mass;     /* 1/kg | 1/(kg m2), not negative */
   double a_bias;           /* its acceleration without the actuator's force, m/s2 | rad/s2 */
   double jerk;             /* slope of a_bias, m/s3 | rad/s3 */
   double stiffness;        /* over mass, 1/s2 */
