@@ -53,10 +53,9 @@ def _declared() -> Iterator[str]:
         'extern const uint64_t SUPPLY_IMAGE[SUPPLY_BYTES / 8];',
         'extern const struct call BEFORE[], AFTER[];', 'extern const struct tuned TUNED[];',
         'extern const size_t BEFORE_COUNT, AFTER_COUNT, TUNED_COUNT;', '',
-        '/* Of the actuator: place of the load, whether loops are on, a current without jump. */',
-        'extern const int32_t LOAD_POSITION, IS_ON, FADE;',
+        '/* Of the actuator: whether its loops are on, and a current without a jump. */',
+        'extern const int32_t IS_ON, FADE;',
         'void ISA(put_number)(ISA(t) *self, int32_t place, double value);',
-        'double ISA(number)(const ISA(t) *self, int32_t place);',
         'int64_t *ISA(flag)(ISA(t) *self, int32_t place);')
 
 
@@ -77,8 +76,7 @@ def source(
     ends = np.cumsum([0, *(len(list(layout.table(one.memory))) for one in called)])
     calls = [f'{{{one.name}, {at}}}' for one, at in zip(called, ends)]
     split = len(supply.before)
-    memory = own.ticked.memory
-    status, load = memory.reu['status'], memory.continuous['load']
+    status = own.ticked.memory.reu['status']
     of_actuator = own.layout()
     return '\n'.join([
         '#include "tables.h"', '', '#include <math.h>', '',
@@ -98,8 +96,7 @@ def source(
             f'{{{inputs[one.name]}, {one.place}}}' for one in may_change] or ['{0, 0}']),
         f'const size_t BEFORE_COUNT = {split}, AFTER_COUNT = {len(calls) - split};',
         f'const size_t TUNED_COUNT = {len(may_change)};',
-        f'const int32_t LOAD_POSITION = {of_actuator.place(load["position"])}, '
-        f'IS_ON = {of_actuator.place(status["is_on"])}, '
+        f'const int32_t IS_ON = {of_actuator.place(status["is_on"])}, '
         f'FADE = {of_actuator.place(status["fade"]["begins"])};', ''])
 
 

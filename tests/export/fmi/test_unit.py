@@ -140,7 +140,7 @@ def test_a_step_that_is_no_multiple_of_the_tick_is_not_made(make):
     unit.step(30)
     before = unit.state()
     for size in (0.0015, 0.0, -0.001, 0.0009999, 1e-9, float('nan'), float('inf'), 1e12):
-        refused(unit, DISCARD, ', must be a multiple of the tick, 0.001 s', unit.slave.doStep,
+        refused(unit, ERROR, ', must be a multiple of the tick, 0.001 s', unit.slave.doStep,
                 unit.t, size)
     assert unit.state() == before
     unit.slave.doStep(unit.t, 0.002 + 1e-12)    # as sums of times have it
@@ -150,9 +150,9 @@ def test_a_step_that_is_no_multiple_of_the_tick_is_not_made(make):
 def test_a_step_from_another_time_is_not_made(make):
     unit = make()
     unit.step(3)
-    refused(unit, DISCARD, 'a step from t = 0.01 s, must be from 0.003 s', unit.slave.doStep,
+    refused(unit, ERROR, 'a step from t = 0.01 s, must be from 0.003 s', unit.slave.doStep,
             0.01, STEP)
-    refused(unit, DISCARD, 'a step from t = 0.002 s, must be from 0.003 s', unit.slave.doStep,
+    refused(unit, ERROR, 'a step from t = 0.002 s, must be from 0.003 s', unit.slave.doStep,
             0.002, STEP)
     assert unit.reached == 0.003
 

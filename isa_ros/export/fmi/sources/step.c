@@ -139,7 +139,7 @@ static int64_t ticks_of(const unit_t *unit, double from, double size)
   } else {
     return whole;
   }
-  unit_say(unit, STATUS_DISCARD, message);
+  unit_say(unit, STATUS_ERROR, message);
   return 0;
 }
 
@@ -150,7 +150,7 @@ enum status unit_step(unit_t *unit, double from, double size)
   int64_t n;
   int code;
   if (unit->given.phase != RUNNING) return unit_refuse_phase(unit, "a step");
-  if (!(n = ticks_of(unit, from, size))) return STATUS_DISCARD;
+  if (!(n = ticks_of(unit, from, size))) return STATUS_ERROR;
   status = first_tick(unit, &code);
   for (int64_t k = 1; k < n && !code; k++) {
     fill_port(unit, k * TICK);

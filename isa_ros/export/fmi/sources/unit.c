@@ -57,7 +57,7 @@ static void follow_start(unit_t *unit)
     given->inputs[IN_SETPOINT_POSITION] = given->inputs[IN_START_POSITION];
 #if HAS_PORT
   if (!given->is_new[IN_PORT_POSITION])
-    given->inputs[IN_PORT_POSITION] = ISA(number)(unit->actuator, LOAD_POSITION);
+    given->inputs[IN_PORT_POSITION] = ISA(load_position)(unit->actuator);
 #endif
 }
 

@@ -61,7 +61,7 @@ enum status unit_write(unit_t *unit, enum type type, const uint32_t *references,
 /* Return whether a reference is that of an enumeration, for versions that have no such type. */
 int unit_is_enumeration(uint32_t reference);
 
-/* Advance from a time by a size, s, a multiple of the tick; STATUS_DISCARD: nothing was done. */
+/* Advance from a time by a size, s, a multiple of the tick; else nothing is done, STATUS_ERROR. */
 enum status unit_step(unit_t *unit, double from, double size);
 double unit_time(const unit_t *unit);
 
