@@ -11,7 +11,7 @@ from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.device import MODES
 from isa_ros.core.fields import units_of
-from isa_ros.core.saved_state import MAX_TICKS
+from isa_ros.core.saved_state import MAX_TICKS, TIME_BYTES
 from isa_ros.core.signals import EVERY_KIND, SAMPLE_FIELDS
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.core.units import of_coordinate
@@ -133,7 +133,7 @@ def _state(own: Exported, layout: Layout) -> Iterator[str]:
     rows = own.actuator.saved.rows
     actuator = own.actuator
     tail = actuator.tuning.snapshot() + actuator.digest.encode()
-    yield '/* A saved state: the time, these parts of the memory, and these bytes. */'
+    yield '/* A saved state: the time, these parts of the memory, these bytes, the checksum. */'
     yield from _array('struct part', 'SAVED', [
         f'{{{layout.place(part)}, {part.nbytes}}} /* {name} */' for name, part in rows])
     yield from _array('unsigned char', 'TAIL', _lines(tail, lambda byte: f'0x{byte:02x}'))
@@ -141,7 +141,7 @@ def _state(own: Exported, layout: Layout) -> Iterator[str]:
     yield from _defined([
         ('STEP_NS', own.step_ns), ('MAX_TICKS', f'INT64_C({MAX_TICKS})'),
         ('OF_FLOAT', FINITE), ('OF_GAIN', GAIN),
-        ('STATE_BYTES', 8 + sum(part.nbytes for _, part in rows) + len(tail))])
+        ('AT_CHECKSUM', TIME_BYTES + sum(part.nbytes for _, part in rows) + len(tail))])
 
 
 def _lines(values: Sequence[int], text: Callable[[int], str], a_line: int = 16) -> Iterator[str]:

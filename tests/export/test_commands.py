@@ -10,7 +10,7 @@ from isa_ros.export.chosen import choose
 from isa_ros.export.exported import exported
 import numpy as np
 import pytest
-from tests.export.libraries import Instance, Loaded, written
+from tests.export.libraries import BEHIND, Instance, Loaded, written
 
 pytestmark = pytest.mark.slow
 
@@ -78,6 +78,6 @@ def test_commands_as_in_python(both):
         actuator.tick(port)
         assert instance.applied.tobytes() == actuator.memory.applied.tobytes(), (k, given)
         assert instance.sample.tobytes() == actuator.sample.tobytes(), (k, given)
-    assert instance.save().tobytes()[:-16] == actuator.snapshot()
+    assert instance.save().tobytes()[:-BEHIND] == actuator.snapshot()
     assert 50 < refused < TICKS - 50
     assert (limited > 0) == actuator.setpoint_range.limits

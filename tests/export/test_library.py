@@ -24,7 +24,7 @@ from isa_ros.export.exported import exported
 from isa_ros.export.library import compiler_of, FLAGS, kernels_of, library, names_of, processor_of
 import numpy as np
 import pytest
-from tests.export.libraries import Instance, Loaded, written
+from tests.export.libraries import BEHIND, Instance, Loaded, sealed, written
 
 pytestmark = pytest.mark.slow
 
@@ -166,7 +166,7 @@ def test_what_it_is(loaded, own):
     assert about.digest.decode() == own.actuator.digest
     assert (about.step_ns, about.is_rotary, about.has_own_load) == (1_000_000, 0, 0)
     assert list(about.start) == [0.05, 0.0, 20.7e6, 0.0]
-    assert Instance(loaded).save().tobytes()[-16:] == about.digest
+    assert Instance(loaded).save().tobytes()[-BEHIND:-8] == about.digest
 
 
 class Texts(ctypes.Structure):
@@ -296,7 +296,7 @@ def test_starts(loaded):
     assert instance.start(0.1, 0.0, 1e5, 1e5) == 0 and instance.start(0.0, 0.0, 2e7, 0.0) == 0
     assert instance.start(0.02, 500.0, 18e6, 2e5) == 0
     expected = started(choose('isa_v5', {'reu.force.kp': 9.5e-08}), 0.02, 500.0, 18e6, 2e5)
-    assert instance.save().tobytes()[:-16] == expected.snapshot()
+    assert instance.save().tobytes()[:-BEHIND] == expected.snapshot()
     assert instance.sample.tobytes() == expected.sample.tobytes()
     given = port(x0=0.02, supply_pressure=18e6, return_pressure=2e5)
     assert instance.tick(given) == 0
@@ -336,7 +336,7 @@ def test_only_a_load_of_its_own_needs_no_port(loaded, tmp_path):
     own = Loaded(written(exported(chosen), tmp_path), 'isa_ram')
     ram, other = Instance(own), Instance(own)
     assert ram.start(0.04, 0.0, 17e6, 3e5) == other.start(0.04, 0.0, 17e6, 3e5) == 0
-    assert ram.save().tobytes()[:-16] == started(chosen, 0.04, 0.0, 17e6, 3e5).snapshot()
+    assert ram.save().tobytes()[:-BEHIND] == started(chosen, 0.04, 0.0, 17e6, 3e5).snapshot()
     for _ in range(3):
         assert ram.tick() == other.tick(port(x0=9.0, supply_pressure=17e6,
                                              return_pressure=3e5)) == 0
@@ -518,19 +518,43 @@ def test_states_that_are_refused(loaded, own):
     def changed(at, value):
         wrong = state.copy()
         wrong[at:at + 8] = np.frombuffer(np.array(value).tobytes(), np.uint8)
-        return wrong
+        return sealed(wrong)
+    assert sealed(state).tobytes() == state.tobytes()
     for t_ns in (-1_000_000, 500_000, 2**32 * 1_000_000):
         assert instance.restore(changed(0, t_ns)) == WRONG_STATE
     assert instance.restore(changed(0, (2**32 - 1) * 1_000_000)) == 0
     assert instance.restore(state) == 0
     assert instance.restore(changed(8, np.nan)) == WRONG_STATE
-    for at in (len(state) - 16, len(state) - 8, len(state) - 24):
+    for at in (len(state) - 16, len(state) - 24, len(state) - 32):
         assert instance.restore(changed(at, 7)) == WRONG_STATE
-    for at in (len(state) - 1, len(state) - 16 - own.actuator.tuning.nbytes):
+    for at in (len(state) - 9, len(state) - BEHIND - own.actuator.tuning.nbytes):
         wrong = state.copy()
         wrong[at] ^= 1
-        assert instance.restore(wrong) == WRONG_STATE
+        assert instance.restore(sealed(wrong)) == WRONG_STATE
     assert instance.restore(state) == 0 and bytes(instance.memory) == before
+
+
+def test_damaged_states_are_refused(loaded):
+    """Every single bit; two signs; two words that are exchanged."""
+    instance = Instance(loaded)
+    for k in range(20):
+        instance.tick(port(x0=0.05 + 1e-5 * k))
+    state, before = instance.save(), bytes(instance.memory)
+    for at in range(len(state)):
+        for bit in range(8):
+            state[at] ^= 1 << bit
+            assert instance.restore(state) == WRONG_STATE, (at, bit)
+            state[at] ^= 1 << bit
+    words = state.view(np.uint64)
+    one, other = np.flatnonzero(words[1:-10])[[3, 40]] + 1
+    assert words[one] != words[other]
+    damaged = words.copy()
+    damaged[[one, other]] ^= np.uint64(1 << 63)
+    assert instance.restore(damaged.view(np.uint8)) == WRONG_STATE
+    damaged = words.copy()
+    damaged[[one, other]] = words[[other, one]]
+    assert instance.restore(damaged.view(np.uint8)) == WRONG_STATE
+    assert bytes(instance.memory) == before and instance.restore(state) == 0
 
 
 def test_altered_states_are_refused_as_in_python(loaded, own):
@@ -542,7 +566,7 @@ def test_altered_states_are_refused_as_in_python(loaded, own):
         instance.tick(given)
         actuator.tick(given)
     state = instance.save()
-    end = len(state) - 16 - actuator.tuning.nbytes
+    end = len(state) - BEHIND - actuator.tuning.nbytes
     odd = [np.array(value).tobytes() for value in (np.nan, -1, 8, 300, 2**31)]
     taken = 0
     for at in range(0, end, 8):
@@ -550,11 +574,11 @@ def test_altered_states_are_refused_as_in_python(loaded, own):
             wrong = state.copy()
             wrong[at:at + 8] = np.frombuffer(text, np.uint8)
             try:
-                actuator.restore(wrong[:-16].tobytes())
+                actuator.restore(wrong[:-BEHIND].tobytes())
                 expected = 0
             except ConfigError:
                 expected = WRONG_STATE
-            assert instance.restore(wrong) == expected, (at, text)
+            assert instance.restore(sealed(wrong)) == expected, (at, text)
             taken += expected == 0
     assert 0 < taken < end
 

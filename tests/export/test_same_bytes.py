@@ -11,7 +11,7 @@ from isa_ros.export.exported import exported
 from isa_ros.tick.exchange import RowSink
 import numpy as np
 import pytest
-from tests.export.libraries import Instance, Loaded, written
+from tests.export.libraries import BEHIND, Instance, Loaded, written
 
 pytestmark = pytest.mark.slow
 
@@ -146,13 +146,13 @@ def test_the_samples_are_those_of_the_bag(case, tmp_path):
 
 
 def test_saved_states_are_those_of_python(case):
-    """Behind them is the digest; a state of a run goes on in the library, and the other way."""
+    """Digest and checksum follow; a state of a run goes on in the library, and the other way."""
     instance, other = Instance(case.loaded), Instance(case.loaded)
     ticks, states = case.captured.ticks, case.captured.states
     for k, tick in enumerate(ticks[:300]):
         instance.tick(tick.port, tick.command, tick.feed)
         if k in (0, 150, 299):
-            assert instance.save().tobytes()[:-16] == states[k + 1]
+            assert instance.save().tobytes()[:-BEHIND] == states[k + 1]
     assert other.restore(instance.save()) == 0
     assert other.sample.tobytes() == case.captured.samples[300].tobytes()
     assert other.t_ns == 300_000_000

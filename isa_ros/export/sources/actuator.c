@@ -29,6 +29,10 @@ enum { OF_POSITION, OF_VELOCITY, OF_EFFORT, OF_STIFFNESS, OF_DAMPING, OF_REFEREN
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 #define AT(type, self, place) ((self) ? (const type *)((self)->block + (place)) : NULL)
 #define ALIGNED 16
+#define MIXER UINT64_C(0x9e3779b97f4a7c15)   /* odd: 2^64 over the golden ratio */
+#define STATE_BYTES (AT_CHECKSUM + sizeof(uint64_t))
+
+_Static_assert(AT_CHECKSUM % sizeof(uint64_t) == 0, "a state is of whole words");
 
 struct @NAME@ {
   int64_t diverged;                     /* what the last tick returned; 0: all is finite */
@@ -248,10 +252,26 @@ static int are_possible(const unsigned char *state)
   return 1;
 }
 
+/*
+ * Return the checksum of a state. Each step maps sums one to one, so that a change within 8 bytes
+ * always changes it.
+ */
+static uint64_t checksum(const unsigned char *state)
+{
+  uint64_t sum = 0, word;
+  for (size_t at = 0; at < AT_CHECKSUM; at += sizeof word) {
+    copy(&word, state + at, sizeof word);
+    sum = (sum ^ word) * MIXER;
+    sum ^= sum >> 32;
+  }
+  return sum;
+}
+
 ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
 {
   const int64_t t_ns = ISA(time_ns)(self);
   unsigned char *to = state;
+  uint64_t sum;
   if (!self || !state) return ISA_NO_INSTANCE;
   if (bytes != STATE_BYTES) return ISA_WRONG_SIZE;
   copy(to, &t_ns, sizeof t_ns);
@@ -261,6 +281,8 @@ ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
     to += SAVED[k].bytes;
   }
   copy(to, TAIL, sizeof TAIL);
+  sum = checksum(state);
+  copy(to + sizeof TAIL, &sum, sizeof sum);
   return are_possible(state) ? ISA_OK : ISA_NOT_FINITE;
 }
 
@@ -268,9 +290,12 @@ ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
 static int check_state(const unsigned char *state)
 {
   int64_t t_ns;
+  uint64_t sum;
   copy(&t_ns, state, sizeof t_ns);
+  copy(&sum, state + AT_CHECKSUM, sizeof sum);
   for (size_t k = 0; k < sizeof TAIL; k++)
-    if (state[STATE_BYTES - sizeof TAIL + k] != TAIL[k]) return ISA_WRONG_STATE;
+    if (state[AT_CHECKSUM - sizeof TAIL + k] != TAIL[k]) return ISA_WRONG_STATE;
+  if (sum != checksum(state)) return ISA_WRONG_STATE;
   if (t_ns < 0 || t_ns % STEP_NS || t_ns / STEP_NS >= MAX_TICKS) return ISA_WRONG_STATE;
   return are_possible(state) ? ISA_OK : ISA_WRONG_STATE;
 }
@@ -341,7 +366,7 @@ ISA_EXPORT const char *ISA(message)(int code)
     case ISA_WRONG_MODE: return "the reference is not of the mode in force";
     case ISA_PRESSURES: return "the return has a higher pressure than the supply";
     case ISA_WRONG_SIZE: return "a saved state has another number of bytes";
-    case ISA_WRONG_STATE: return "the bytes are not a state of this actuator";
+    case ISA_WRONG_STATE: return "the bytes are not a state of this actuator, or damaged";
     default: return "unknown code";
   }
 }

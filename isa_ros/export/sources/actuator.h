@@ -33,7 +33,7 @@ enum isa_code {
   ISA_WRONG_MODE = -6,     /* a reference of another mode than the one in force */
   ISA_PRESSURES = -7,      /* at the start, the return has a higher pressure than the supply */
   ISA_WRONG_SIZE = -8,     /* a saved state has another number of bytes */
-  ISA_WRONG_STATE = -9     /* bytes that are not a state of this actuator */
+  ISA_WRONG_STATE = -9     /* bytes that are not a state of this actuator, or damaged */
 };
 
 /* What a command has, bits of isa_command.kinds; several may be together. */

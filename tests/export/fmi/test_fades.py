@@ -11,7 +11,7 @@ from tests.export.fmi.importing import Unit  # noqa: E402
 from tests.export.fmi.runs import SAMPLED  # noqa: E402
 
 pytestmark = pytest.mark.slow
-DIGEST_BYTES = 16    # behind the actuator's snapshot, at the end of a unit's state
+BEHIND = 24     # bytes of digest and checksum behind the actuator's snapshot, at a unit's end
 
 # By tick: what the unit is set to, the command of the run, and the gains that both get.
 COURSE = {
@@ -48,7 +48,7 @@ class Beside:
         self.simulation = Simulation(idle(case.run.configuration))
         self.actuator = self.simulation.group.actuators[0]
         snapshot = self.actuator.snapshot()
-        self.begin = -len(snapshot) - DIGEST_BYTES
+        self.begin = -len(snapshot) - BEHIND
         self.own_bytes = len(snapshot) - len(self.actuator.tuning.snapshot())
 
     def give(self, values, command, changes):
