@@ -34,8 +34,8 @@ class About(NamedTuple):
 CATEGORIES = {
     'logStatusWarning': 'a value that was refused or limited; the step goes on without it',
     'logStatusDiscard': 'a number that is not finite; the value before stays',
-    'logStatusError': 'a call that is not possible, as a step that is not of whole ticks, or a state '
-                      'that is no longer finite'}
+    'logStatusError': 'a call that is not possible, as a step that is not of whole ticks, or a '
+                      'state that is no longer finite'}
 """Meaning of each category of messages."""
 TYPES = {Type.REAL: 'Real', Type.INTEGER: 'Integer', Type.BOOLEAN: 'Boolean',
          Type.TEXT: 'String', Type.ENUMERATION: 'Enumeration'}

@@ -4,18 +4,19 @@ What a unit is given: command, load port and start, each a number with its range
 Their order is that of the library's inputs, and their names, in capitals, are its constants.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from isa_ros.actuator.config import ActuatorConfig
-from isa_ros.actuator.overload import most_force
 from isa_ros.actuator.requests import start_mode
-from isa_ros.actuator.setpoint_range import Bounds, setpoint_bounds
+from isa_ros.actuator.setpoint_range import Bounds, reference_bounds, setpoint_bounds
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import LOAD_PORT
-from isa_ros.core.units import MPA, of_coordinate
+from isa_ros.core.units import of_coordinate
 from isa_ros.export.fmi.variables import Home, Role, Type, Variable
-from isa_ros.plant.plant import MotorPlant
 from isa_ros.reu.cascade import initial_gains
+from isa_ros.reu.wiring import possible_modes
 import numpy as np
 
 PORT_FIELDS: Mapping[str, tuple[str, str, str]] = {
@@ -75,11 +76,23 @@ def _command(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
                  float(config.auto_enable))
     yield _input('clear_fault', Type.BOOLEAN, 'its rising edge clears a fault', '1', 0.0)
     yield _input('quick_stop', Type.BOOLEAN, 'its rising edge is a quick stop', '1', 0.0)
-    mode = start_mode(config.name, config.mode, sheet.reu)
-    yield _input('mode', Type.ENUMERATION, 'mode of the device', '1', float(mode),
-                 Bounds(1.0, len(MODES) - 1.0, '', ''), 'Mode')
-    yield _input('reference', Type.REAL,
-                 'setpoint of the modes current (A), spool (m) and pressure (Pa)', '1', 0.0)
+    mode, possible = start_mode(config.name, config.mode, sheet.reu), possible_modes(sheet.reu)
+    yield _input('mode', Type.ENUMERATION, f'mode of the device: {modes_of(possible)}', '1',
+                 float(mode), Bounds(float(possible[0]), float(possible[-1]), '', ''), 'Mode')
+    yield _input('reference', Type.REAL, _references(sheet), '1', 0.0)
+
+
+def modes_of(numbers: Iterable[int]) -> str:
+    """Return modes with their numbers, as 1 current, 6 impedance."""
+    return ', '.join(f'{number} {MODES[number]}' for number in numbers)
+
+
+def _references(sheet: ActuatorSheet) -> str:
+    """Return what the reference is in the modes that have one, with its range."""
+    bounds = reference_bounds(sheet)
+    named = [f'{MODES[mode]}, {bounds[mode].low:g} to {bounds[mode].high:g} {bounds[mode].unit}'
+             for mode in possible_modes(sheet.reu) if mode in bounds]
+    return f'setpoint of a mode: {"; ".join(named)}; not used in the others'
 
 
 def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
@@ -87,7 +100,8 @@ def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
     for field, (name, unit, meaning) in PORT_FIELDS.items():
         value = _load_position(config, start) if field == 'x0' else 0.0
         yield _input(
-            f'port.{name}', Type.REAL, meaning, of_coordinate(unit, is_rotary), value)
+            f'port.{name}', Type.REAL, meaning, of_coordinate(unit, is_rotary), value,
+            )._replace(low=0.0 if field == 'inverse_mass' else None)
 
 
 def _load_position(config: ActuatorConfig, start: np.void) -> float:
@@ -100,20 +114,11 @@ def _start(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
     sheet = config.sheet
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
     position = setpoint_bounds(sheet).get('position')
-    low, high = _largest_forces(config)
+    borne = float(start['force'])    # a run file may begin with relief valves open
+    low, high = held_forces(config)
     for found in (
             _input('start.position', Type.REAL, 'of piston or rotor at the start', length,
                    float(start['position']), position),
             _input('start.force', Type.REAL, 'that it holds at the start, > 0 pushes out', force,
-                   float(start['force']), Bounds(low, high, force, ''))):
+                   borne, Bounds(min(low, borne), max(high, borne), force, ''))):
         yield found._replace(role=Role.START)
-
-
-def _largest_forces(config: ActuatorConfig) -> tuple[float, float]:
-    """Return the range of the force that it can hold at the start, N or Nm."""
-    plant = config.sheet.plant
-    if isinstance(plant, MotorPlant):
-        most = plant.relief.opening_pressure_mpa * MPA * plant.drive.areas[0]
-        return -most, most
-    area_a, area_b = plant.drive.areas
-    return -most_force(plant, area_a), most_force(plant, area_b)

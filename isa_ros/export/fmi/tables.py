@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Sequence
 import re
 
 from isa_ros.export.exported import Exported
-from isa_ros.export.fmi.inputs import PORT_FIELDS
+from isa_ros.export.fmi.inputs import modes_of, PORT_FIELDS
 from isa_ros.export.fmi.supply import Supplied
 from isa_ros.export.fmi.tuned import Tuned
 from isa_ros.export.fmi.variables import Home, Type, Variable
 from isa_ros.export.layout import ALIGNED
 from isa_ros.export.tables import number, quoted
+from isa_ros.reu.wiring import possible_modes
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 
@@ -19,7 +20,7 @@ _NOT_OF_A_WORD = re.compile('[^A-Z0-9]')
 def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: str) -> str:
     """Return the text of the tables' header."""
     inputs = [variable for variable in table if variable.home is Home.INPUT]
-    layout = supply.layout()
+    layout, modes = supply.layout(), possible_modes(own.chosen.config.sheet.reu)
     return '\n'.join([
         f'/* The unit of {own.word}: its variables, and the memory of its supply. */',
         '#ifndef ISA_TABLES_H', '#define ISA_TABLES_H', '', f'#include "{own.word}.h"',
@@ -28,6 +29,7 @@ def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: st
             ('TOKEN', quoted(token)), ('STEP_NS', own.step_ns),
             ('LIMITS', int(own.actuator.setpoint_range.limits)),
             ('HAS_PORT', int(not own.has_own_load)), ('HAS_FEED', int(supply.has_feed)),
+            ('MODES', sum(1 << mode for mode in modes)), ('MODE_NAMES', quoted(modes_of(modes))),
             ('VARIABLE_COUNT', len(table)), ('INPUTS', len(inputs)),
             ('PORT_INPUTS', len(PORT_FIELDS)), ('SUPPLY_ALIGNED', ALIGNED),
             ('SUPPLY_BYTES', layout.size), ('SUPPLY_WORDS', len(_words(supply))),

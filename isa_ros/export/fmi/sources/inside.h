@@ -38,6 +38,12 @@ static inline int is_finite(double value)
   return value - value == 0.0;
 }
 
+/* Return whether the actuator has a mode of a number. */
+static inline int has_mode(double number)
+{
+  return number >= 0.0 && number <= ISA_MODE_IMPEDANCE && MODES >> (int)number & 1;
+}
+
 /* Hand a message to the importer; return its status. */
 enum status unit_say(const unit_t *unit, enum status status, const char *message);
 

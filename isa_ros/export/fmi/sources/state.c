@@ -41,7 +41,7 @@ static int is_possible(const struct given *given)
   if (given->phase < CREATED || given->phase > BROKEN || !is_finite(given->begin)) return 0;
   for (int k = 0; k < INPUTS; k++)
     if (!is_finite(given->inputs[k]) || !is_finite(given->handed[k])) return 0;
-  return given->inputs[IN_MODE] >= 0.0 && given->inputs[IN_MODE] <= ISA_MODE_IMPEDANCE;
+  return has_mode(given->inputs[IN_MODE]);
 }
 
 /* Return whether the n bytes are finite numbers. */

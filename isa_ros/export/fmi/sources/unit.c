@@ -213,13 +213,18 @@ enum status unit_read_text(const unit_t *unit, uint32_t reference, const char **
 static enum status say_range(const unit_t *unit, enum status status, const struct variable *own,
                              double value, const char *then)
 {
-  char message[UNIT_MESSAGE_BYTES];
-  if (is_finite(value))
-    snprintf(message, sizeof message, "%s = %g %s, must be %g to %g %s; %s", own->name, value,
-             own->unit, own->low, own->high, own->unit, then);
+  char message[UNIT_MESSAGE_BYTES], range[UNIT_MESSAGE_BYTES / 4];
+  const char *space = *own->unit ? " " : "";
+  if (!is_finite(value))
+    snprintf(range, sizeof range, "finite");
+  else if (own->place == IN_MODE)
+    snprintf(range, sizeof range, "%s", MODE_NAMES);
+  else if (is_finite(own->high))
+    snprintf(range, sizeof range, "%g to %g%s%s", own->low, own->high, space, own->unit);
   else
-    snprintf(message, sizeof message, "%s = %g %s, must be finite; %s", own->name, value,
-             own->unit, then);
+    snprintf(range, sizeof range, ">= %g%s%s", own->low, space, own->unit);
+  snprintf(message, sizeof message, "%s = %g%s%s, must be %s; %s", own->name, value, space,
+           own->unit, range, then);
   return unit_say(unit, status, message);
 }
 
@@ -239,6 +244,8 @@ static enum status write_one(unit_t *unit, const struct variable *own, double va
   if (is_start && unit->given.phase > BEGINNING) return unit_refuse_phase(unit, own->name);
   if (!is_finite(value))
     return say_range(unit, STATUS_DISCARD, own, value, "the value before stays");
+  if (own->place == IN_MODE && !has_mode(value))
+    return say_range(unit, STATUS_WARNING, own, value, "the value before stays");
   if (value < own->low || value > own->high) {
     if (is_start) return say_range(unit, STATUS_ERROR, own, value, "the value before stays");
     if (!LIMITS) return say_range(unit, STATUS_WARNING, own, value, "the value before stays");
