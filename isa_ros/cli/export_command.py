@@ -18,10 +18,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         'actuator', metavar='MODEL|CONFIG[:ACTUATOR]',
         help='a model, or an actuator of a run file: isa_v5, leg.yaml:kfe')
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument('--c', action='store_true', help='a shared library, header and examples')
+    what.add_argument(
+        '--c', action='store_true',
+        help='a shared library, header and examples; not with --fmu')
     what.add_argument(
         '--fmu', action='store_true',
-        help='with its supply, a unit of FMI 2.0 and one of FMI 3.0 for co-simulation')
+        help='with its supply, a unit of FMI 2.0 and one of FMI 3.0 for co-simulation; not with '
+        '--c')
     parser.add_argument(
         '--out', type=shared_arguments.directory_to_write, metavar='DIR', required=True,
         help='new directory, or that of an earlier export')

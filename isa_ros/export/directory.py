@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 import hashlib
 import json
 from pathlib import Path
+import tempfile
 from typing import Any
 
 from isa_ros.core.atomic_file import replace_file
@@ -20,12 +21,13 @@ def refuse_foreign(out: Path, names: Collection[str]) -> None:
     Raises
     ------
     ConfigError
-        It is a file, has files but none of an export, or one of the names is that of a file that
-        is not as it was exported.
+        It is a file or cannot be written, has files but none of an export, or one of the names
+        is that of a file that is not as it was exported.
 
     """
     if out.exists() and not out.is_dir():
         raise ConfigError(f'{out} is a file, must be a directory')
+    _try_to_write(out)
     there = sorted(path.name for path in out.iterdir()) if out.exists() else []
     if there and LIST not in there:
         raise ConfigError(f'{out} has files that are not of an export, such as {there[0]}; '
@@ -57,6 +59,16 @@ def write(out: Path, files: Mapping[str, bytes]) -> None:
         replace_file(out / LIST, text.encode(), is_durable=False)
     except OSError as error:
         raise ConfigError(f'{error.filename}: cannot be written, {error.strerror}') from error
+
+
+def _try_to_write(out: Path) -> None:
+    """Refuse a directory in which no file can be made: permissions alone do not say so."""
+    nearest = next(place for place in (out, *out.absolute().parents) if place.exists())
+    try:
+        with tempfile.TemporaryFile(dir=nearest):
+            pass
+    except OSError as error:
+        raise ConfigError(f'{out}: cannot be written, {error.strerror}') from error
 
 
 def _exported(out: Path) -> dict[str, str]:

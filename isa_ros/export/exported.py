@@ -13,6 +13,7 @@ from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
 from isa_ros.export.layout import Layout
+from isa_ros.export.reserved import RESERVED
 from isa_ros.export.starting import start_actuator, Started
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
@@ -80,7 +81,7 @@ def word_of(actuator: str, given: str | None = None) -> str:
     Raises
     ------
     ConfigError
-        It cannot be a name, or it is that of a type of the header.
+        It cannot be a name, or it is that of a type of the header, or of C or C++.
 
     """
     own = re.sub('[^a-z0-9_]', '_', actuator.lower())
@@ -88,6 +89,9 @@ def word_of(actuator: str, given: str | None = None) -> str:
     if not _WORD.fullmatch(word):
         raise ConfigError(
             f'--name {word!r}, must be lower-case letters, digits and _, a letter first')
+    if word in RESERVED:
+        raise ConfigError(
+            f'--name {word} is a word or a type of C or C++, must be another, as {PREFIX}{word}')
     if word.removeprefix(PREFIX) in TYPES and word.startswith(PREFIX):
         raise ConfigError(f'{word} is a type of the header; choose another name with --name')
     return word

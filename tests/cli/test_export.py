@@ -64,6 +64,8 @@ def test_what_is_refused(tmp_path, capsys):
             (('isa_v5', '--c', '--compiler', 'no-cc'), 'isa: --compiler no-cc: no such C compi'),
             (('isa_v5', '--c', '--target', 'arm'), 'isa: --target arm, valid: x86-64-v3, '),
             (('isa_v5', '--c', '--name', 'A'), "isa: --name 'A', must be "),
+            (('isa_v5', '--c', '--name', 'int'), 'isa: --name int is a word or a type of C or '),
+            (('isa_v5', '--fmu', '--name', 'class'), 'isa: --name class is a word or a type of'),
             (('isa_v5', '--c', '--load', 'none'), 'isa export: argument --load: invalid choice'),
             (('isa_v5', '--c', '--set', 'load'), "isa: --set 'load', must be KEY=VALUE\n"),
             (('isa_v5', '--c', '--fmu'), 'isa export: argument --fmu: not allowed with'),
@@ -71,6 +73,11 @@ def test_what_is_refused(tmp_path, capsys):
         assert refused(capsys, *arguments, '--out', out).startswith(line)
     assert 'required: --out' in refused(capsys, 'isa_v5', '--c')
     assert not out.exists()
+
+
+def test_a_directory_that_takes_no_file(capsys):
+    assert refused(capsys, 'isa_v5', '--c', '--out', '/proc/out').startswith(
+        'isa: /proc/out: cannot be written, ')
 
 
 def test_foreign_files_stay(tmp_path, capsys):

@@ -99,6 +99,10 @@ def test_words():
     for given in ('Knee', '2knee', '', 'knee.c', 'k nee', 'knee\n'):
         with pytest.raises(ConfigError, match='^--name .*, must be lower-case letters'):
             word_of('kfe', given)
+    for given in ('int', 'class', 'xor', 'bool', 'size', 'uint16', 'int_fast8', 'linux'):
+        with pytest.raises(ConfigError, match=f'^--name {given} is a word or a type of C or C'):
+            word_of('kfe', given)
+    assert word_of('int') == 'isa_int' and word_of('kfe', 'int_') == 'int_'
     for actuator, given in (('sample', None), ('kfe', 'isa_port')):
         with pytest.raises(ConfigError, match=r'^isa_\w+ is a type of the header; choose'):
             word_of(actuator, given)

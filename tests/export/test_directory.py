@@ -1,6 +1,7 @@
 """The directory of an export: nothing of a user is overwritten."""
 
 import json
+from pathlib import Path
 
 from isa_ros.errors import ConfigError
 from isa_ros.export.directory import LIST, refuse_foreign, write
@@ -73,3 +74,10 @@ def test_what_cannot_be_written(tmp_path):
     (tmp_path / 'out').mkdir()
     with pytest.raises(ConfigError, match='one.h: cannot be written, '):
         write(tmp_path / 'out', {'below/one.h': b''})
+
+
+def test_a_directory_that_takes_no_file(tmp_path):
+    """As /proc, whose permissions allow it; nothing is left in one that does."""
+    refused(Path('/proc/none/out'), '^/proc/none/out: cannot be written, ')
+    refuse_foreign(tmp_path / 'a' / 'b', FILES)
+    assert list(tmp_path.iterdir()) == []

@@ -397,6 +397,14 @@ def test_commands_that_are_refused(loaded, given, code):
     assert bytes(instance.memory) == before
 
 
+def test_before_the_first_tick_the_command_is_that_of_the_start(loaded):
+    instance = Instance(loaded)
+    applied = instance.applied
+    assert applied['kinds'] == HAS_SETPOINT | HAS_ENABLE
+    assert applied['position'] == instance.sample['position'] and applied['is_enabled'] == 1
+    assert instance.tick(port()) == 0 and instance.applied['kinds'] == 0
+
+
 def test_what_a_mode_does_not_use_may_be_missing(loaded):
     instance = Instance(loaded)
     held = instance.sample['position']

@@ -117,7 +117,7 @@ typedef struct isa_reply {
   double return_volume;    /* oil given to the return, m3 */
 } isa_reply_t;
 
-/* What it gave to its supply in the last tick with an isa_feed; zeros before the first. */
+/* What it drew in the last tick with an isa_feed, for the next one; zeros before the first. */
 typedef struct isa_fed {
   double flow;             /* drawn at the end of the tick, m3/s */
   double conductance;      /* dq/dP of its valve there, m3/s/Pa */
@@ -216,7 +216,10 @@ double @NAME@_load_position(const @NAME@_t *self);
 const isa_sample_t *@NAME@_sample(const @NAME@_t *self);
 const isa_reply_t *@NAME@_reply(const @NAME@_t *self);
 const isa_fed_t *@NAME@_fed(const @NAME@_t *self);
-/* The command that took effect in the last tick, with all values in force; kinds is 0 without. */
+/*
+ * The command that took effect in the last tick, with all values in force; kinds is 0 without.
+ * Before the first tick ISA_SETPOINT | ISA_ENABLE: what it begins with.
+ */
 const isa_command_t *@NAME@_applied(const @NAME@_t *self);
 int64_t @NAME@_time_ns(const @NAME@_t *self);
 
