@@ -7,6 +7,7 @@ import pytest
 from tests.docs import blocks
 from tests.docs.blocks import blocks_of, run
 from tests.ros.domains import held_domain
+from tests.ros.started import is_alive, wait_for
 
 DOCS = Path(__file__).parents[2] / 'docs'
 PAGES = {
@@ -51,8 +52,7 @@ def test_what_a_block_leaves_behind_is_ended(
         with pytest.raises(AssertionError, match=message) if message else nullcontext():
             run(page % end, tmp_path)
         child = int((tmp_path / 'child').read_text())
-        assert not Path(f'/proc/{child}').exists() or (
-            Path(f'/proc/{child}/stat').read_text().split()[2] in 'ZX')
+        wait_for(lambda pid=child: not is_alive(pid), 'the end of the child')
 
 
 def test_files_are_written_and_python_stands_beside_them(tmp_path: Path) -> None:
