@@ -1,7 +1,8 @@
 """The script that makes the libraries of kernels."""
 
-from concurrent.futures import Future
+from concurrent.futures import Future, ProcessPoolExecutor
 import io
+from multiprocessing import get_context
 from types import SimpleNamespace
 
 from isa_ros.core.bound import run_rounds
@@ -15,10 +16,16 @@ from scripts.make_kernels import link, Made, main, make, Making, PERIOD_S, Progr
 OWN = own_target()
 
 
+def rehearsed(name):
+    """Return what a rehearsal asks for, in a process that has asked for nothing."""
+    with ProcessPoolExecutor(1, get_context('spawn')) as process:
+        return process.submit(rehearse, name).result()
+
+
 @pytest.fixture(scope='module')
 def alone():
     """Return what actuators without a run ask for, by name."""
-    return {wanted.name: wanted for wanted in rehearse(ALONE)}
+    return {wanted.name: wanted for wanted in rehearsed(ALONE)}
 
 
 def test_every_configuration_is_rehearsed():
@@ -36,7 +43,7 @@ def test_actuators_ask_for_their_tick(alone):
 
 @pytest.mark.slow
 def test_a_leg_asks_for_all_that_its_run_needs():
-    found = rehearse('leg.yaml')
+    found = rehearsed('leg.yaml')
     names = {(wanted.name, wanted.is_called) for wanted in found}
     assert {('leg_terms', True), ('fill_ports', False), ('record', False), ('watch', False),
             ('keep', False), ('answer_ticks', False), ('receive_answers', False),
@@ -49,7 +56,7 @@ def test_a_leg_asks_for_all_that_its_run_needs():
 @pytest.mark.slow
 def test_controllers_of_scenarios_ask_for_their_kernels():
     """The trot swings its feet after half a second."""
-    names = {wanted.name for wanted in rehearse('quadruped.yaml')}
+    names = {wanted.name for wanted in rehearsed('quadruped.yaml')}
     assert {'update_legs', 'share_wrench', 'limit_forces', 'swing_feet'} <= names
 
 
