@@ -44,7 +44,7 @@ def ended(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_a_signal_while_a_program_loads_ends_it_at_once(
         module: str, number: signal.Signals, imports: Path) -> None:
     """The library that is imported would swallow an exception."""
-    loaded = 'isa_ros.cli.commands' if module == 'isa_ros' else 'numba'
+    loaded = 'isa_ros.cli.commands' if module == 'isa_ros' else 'rclpy'
     imports.write_text(AT_AN_IMPORT.format(name=loaded, act=f"""
             try:
                 os.kill(os.getpid(), {int(number)})
