@@ -78,7 +78,7 @@ def test_another_source_and_an_earlier_tick_are_asked_anew(rows):
 
 def test_a_source_is_planned_until_it_has_more_than_commands():
     source = Motion().source
-    assert [source.planned_until(tick) for tick in (0, 80, 81, 90)] == [80, 80, 90, 90]
+    assert [source.planned_until(tick) for tick in (0, 80, 81, 90)] == [80, 80, 89, 90]
     assert source.planned_until(91) == float('inf')
     assert source.quiet_until(50) == 50
     assert ScheduledSource(lambda tick, out: None).planned_until(4) == 4
