@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError, one_line, RunError
-from isa_ros.nodes.middleware.refusals import refusals
-from isa_ros.nodes.terminal.visitor import absolute, not_found, visiting, Visitor
+from isa_ros.errors import ConfigError, one_line
+from isa_ros.nodes.terminal.visitor import absolute, visiting, Visitor
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParametersAtomically
 from rclpy.parameter import Parameter, parameter_value_to_python
 import yaml
@@ -88,15 +87,7 @@ def _values(visitor: Visitor, path: str, changes: Sequence[Change]) -> list[Any]
 
 def _asked(visitor: Visitor, path: str, service: str, kind: Any, request: Any) -> Any:
     """Return the answer of a node's service."""
-    with refusals():
-        client = visitor.node.create_client(kind, f'{path}/{service}')
-    if not visitor.wait(client.service_is_ready):
-        raise not_found('node', path, _nodes(visitor), visitor.seconds)
-    future = client.call_async(request)
-    if not visitor.wait(future.done):
-        raise RunError(f'node {path}: no answer within {visitor.seconds}')
-    visitor.node.destroy_client(client)
-    return future.result()
+    return visitor.ask('node', path, service, kind, request, _nodes)
 
 
 def _nodes(visitor: Visitor) -> list[str]:

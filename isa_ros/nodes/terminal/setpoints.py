@@ -69,13 +69,7 @@ def request(actuator: str, what: str, timeout_s: float, print_line: Callable[[st
     path = absolute(actuator)
     service, kind, sent = REQUESTS[what]
     with visiting(timeout_s) as visitor:
-        client = visitor.node.create_client(kind, f'{path}/{service}')
-        if not visitor.wait(client.service_is_ready):
-            raise not_found('actuator', path, actuators(visitor), visitor.seconds)
-        future = client.call_async(sent)
-        if not visitor.wait(future.done):
-            raise RunError(f'actuator {path}: no answer within {visitor.seconds}')
-        answer = future.result()
+        answer = visitor.ask('actuator', path, service, kind, sent, actuators)
     print_line(f'{path}: {one_line(answer.message)}')
     return bool(answer.success)
 

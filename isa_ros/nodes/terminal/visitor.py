@@ -39,6 +39,29 @@ class Visitor:
             self._executor.spin_once(min(left, _LOOK_S))
         return True
 
+    def ask(self, what: str, path: str, service: str, kind: Any, request: Any,
+            known: Callable[['Visitor'], Sequence[str]]) -> Any:
+        """
+        Return the answer of a service of a node; ``what`` it is, and those ``known`` of it.
+
+        Raises
+        ------
+        ConfigError
+            No node can have such a name.
+        RunError
+            It did not appear, or did not answer, within the timeout.
+
+        """
+        with refusals():
+            client = self.node.create_client(kind, f'{path}/{service}')
+        if not self.wait(client.service_is_ready):
+            raise not_found(what, path, known(self), self.seconds)
+        future = client.call_async(request)
+        if not self.wait(future.done):
+            raise RunError(f'{what} {path}: no answer within {self.seconds}')
+        self.node.destroy_client(client)
+        return future.result()
+
     def close(self) -> None:
         """End the executor."""
         self._executor.shutdown()
