@@ -2,10 +2,22 @@
 
 from typing import NamedTuple
 
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.rest import rest, Rows
 from isa_ros.actuator.rows import Memory
+from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.kernel import kernel
 import numpy as np
+
+
+def start_forces(config: ActuatorConfig, configured: float) -> tuple[float, float]:
+    """
+    Return the forces, N | Nm, that an actuator may begin with: those that it holds.
+
+    The ``configured`` one is among them: a run file may begin with relief valves open.
+    """
+    low, high = held_forces(config)
+    return min(low, configured), max(high, configured)
 
 
 class Started(NamedTuple):

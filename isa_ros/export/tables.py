@@ -7,7 +7,6 @@ from typing import Any
 from isa_ros.actuator.integration import state_name, STATE_SIZE
 from isa_ros.actuator.setpoint_range import (
     Bounds, LIMIT, positions, reference_bounds, setpoint_bounds)
-from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.device import MODES
 from isa_ros.core.fields import units_of
@@ -18,6 +17,7 @@ from isa_ros.core.units import of_coordinate
 from isa_ros.core.version import VERSION
 from isa_ros.export.exported import Exported
 from isa_ros.export.layout import Layout
+from isa_ros.export.starting import start_forces
 from isa_ros.export.state_checks import Check, checks, FINITE, GAIN
 from isa_ros.reu.wiring import possible_modes
 import numpy as np
@@ -112,15 +112,14 @@ def _setpoints(own: Exported) -> Iterator[str]:
         *(_bounds(references.get(mode, _EVERYTHING), f'reference, mode {name}')
           for mode, name in enumerate(MODES))])
     low, high, _, _ = positions(sheet)
-    pulled, pushed = held_forces(config)
-    force = float(own.start['force'][0])    # a run file may begin with more
+    pulled, pushed = start_forces(config, float(own.start['force'][0]))
     yield from _defined([
         ('EVERY_KIND', EVERY_KIND),
         ('REFERENCES', sum(1 << mode for mode in references)),
         ('POSSIBLE_MODES', sum(1 << mode for mode in possible_modes(sheet.reu))),
         ('LIMITS', int(config.beyond_range == LIMIT)),
         ('POSITION_LOW', number(low)), ('POSITION_HIGH', number(high)),
-        ('FORCE_LOW', number(min(pulled, force))), ('FORCE_HIGH', number(max(pushed, force))),
+        ('FORCE_LOW', number(pulled)), ('FORCE_HIGH', number(pushed)),
         ('VACUUM', number(-ATMOSPHERE))])
 
 

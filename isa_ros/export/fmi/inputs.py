@@ -10,11 +10,11 @@ from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.setpoint_range import Bounds, reference_bounds, setpoint_bounds
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import of_coordinate
 from isa_ros.export.fmi.variables import Home, Role, Type, Variable
+from isa_ros.export.starting import start_forces
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.wiring import possible_modes
 import numpy as np
@@ -114,11 +114,10 @@ def _start(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
     sheet = config.sheet
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
     position = setpoint_bounds(sheet).get('position')
-    borne = float(start['force'])    # a run file may begin with relief valves open
-    low, high = held_forces(config)
+    borne = float(start['force'])
     for found in (
             _input('start.position', Type.REAL, 'of piston or rotor at the start', length,
                    float(start['position']), position),
             _input('start.force', Type.REAL, 'that it holds at the start, > 0 pushes out', force,
-                   borne, Bounds(min(low, borne), max(high, borne), force, ''))):
+                   borne, Bounds(*start_forces(config, borne), force, ''))):
         yield found._replace(role=Role.START)
