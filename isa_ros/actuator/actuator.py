@@ -30,6 +30,7 @@ from isa_ros.core.saved_state import TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import own_record, static_force
+from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
@@ -281,7 +282,7 @@ class SmartActuator:
     def latch_tuning(self) -> None:
         """Begin a tick: put tuned values in force, without a jump of the valve current."""
         if self.tuning.latch(self.t_ns // PLANT_STEP_NS) and self._reu.status.is_on:
-            self._reu.status.fade.begins = 1
+            self._reu.status.fade.begins = EVERY_BLOCK
 
     def raise_diverged(self, state: int) -> NoReturn:
         """Raise `SimulationDiverged` for a state, given by its index in `CONTINUOUS`."""

@@ -11,6 +11,7 @@ from isa_ros.core.device import ENABLED
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
     EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED)
+from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.device import is_enabled
 from isa_ros.reu.protection import feed
 from isa_ros.reu.stops import stay_here
@@ -87,7 +88,7 @@ def latch(pending, reu, applied):
         if not math.isnan(pending.damping):
             setpoint.damping = pending.damping
         if not kinds & HAS_SETPOINT and device.is_on:
-            device.fade.begins = 1
+            device.fade.begins = EVERY_BLOCK
     if kinds & HAS_REFERENCE:
         setpoint.reference = pending.reference
         setpoint.is_reference = 1.0

@@ -12,6 +12,7 @@ from isa_ros.core.conditions import CONDITIONS, REACTIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import EVERY_KIND, Records, WAS_REFUSED
 from isa_ros.errors import ConfigError
+from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.protection import EXTENDING, GONE, RETRACTING
 
 _FLAG, _BITS, _MODE = 1, (1 << len(CONDITIONS)) - 1, len(MODES) - 1
@@ -23,7 +24,8 @@ LARGEST: Mapping[str, int] = {
     'status.is_on': _FLAG, 'status.is_stopping': _FLAG, 'status.auto_enable': _FLAG,
     'status.is_energised': _FLAG, 'status.is_open': _FLAG,
     'status.is_damping': _FLAG, 'status.is_returning': _FLAG, 'status.flow.is_held': _FLAG,
-    'status.requested_enable': _FLAG, 'status.fade.begins': _FLAG, 'status.fade.is_on': _FLAG,
+    'status.requested_enable': _FLAG,
+    'status.fade.begins': EVERY_BLOCK, 'status.fade.is_on': _FLAG,
     'status.requests': EVERY_KIND, 'status.refused': EVERY_KIND,
     'status.trips': _BITS, 'status.warnings': _BITS,
     'protection.trips': _BITS, 'protection.warnings': _BITS, 'protection.first': _BITS,

@@ -15,8 +15,10 @@ from isa_ros.reu.schedule import scheduled
 from isa_ros.reu.wiring import OFF, PID
 import numpy as np
 
+EVERY_BLOCK = 0b1111  # bits of the position, force, pressure and spool block
+
 FADE = np.dtype([
-    ('begins', 'i8'),    # 1: the next series current is to be that of the period before
+    ('begins', 'i8'),    # bits of the blocks that have not run since a change: a jump may come
     ('is_on', 'i8'),     # 1: ``added`` is not zero
     ('added', 'f8')])    # series A
 """What is left of a jump."""
@@ -25,14 +27,16 @@ SMALLEST = 1e-9  # series A: a millionth of the rated current, far below the con
 
 
 @kernel
-def faded(series, before, share, fade):
+def faded(series, before, ran, share, fade):
     """
     Return the series current (A) without its jump; ``share`` of it is left after each period.
 
-    ``before`` is the series current of the period before.
+    ``before`` is the series current of the period before; ``ran`` are the bits of the blocks that
+    ran in this one. The first time that each of them runs after a change it may jump.
     """
-    if fade.begins:
-        fade.begins, fade.is_on = 0, 1
+    if fade.begins & ran:
+        fade.begins &= ~ran
+        fade.is_on = 1
         fade.added = before - series
     else:
         fade.added *= share

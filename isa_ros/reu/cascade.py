@@ -131,6 +131,24 @@ def is_due(step, period_steps, offset_steps):
 
 
 @kernel
+def ran(step, reu, acting):
+    """Return the bits of `EVERY_BLOCK` that run at plant step ``step``, or not at all."""
+    found = 0
+    if acting < POSITION or is_due(step, reu.position_steps, reu.offset_steps):
+        found |= 0b0001
+    if acting < FORCE or reu.force_kind == OFF or is_due(
+            step, reu.force_steps, reu.offset_steps):
+        found |= 0b0010
+    if acting < PRESSURE or reu.pressure_kind == OFF or is_due(
+            step, reu.pressure_steps, reu.offset_steps):
+        found |= 0b0100
+    if acting == CURRENT or reu.spool_kind == OFF or is_due(
+            step, reu.spool_steps, reu.offset_steps):
+        found |= 0b1000
+    return found
+
+
+@kernel
 def position_reference_inwards(step, reu, state):
     """Run the position block if it acts and is due; return the next block's reference."""
     device, setpoint = state.status, setpoint_in_force(state)
@@ -206,7 +224,8 @@ def cascade_step(step, reu, state):
     series = spool_block(step, reference, reu, state)
     if device.fade.begins or device.fade.is_on:
         series = faded(
-            series, state.current_reference / reu.parallel, reu.rules.fade, device.fade)
+            series, state.current_reference / reu.parallel, ran(step, reu, device.acting),
+            reu.rules.fade, device.fade)
     state.current_reference = reu.parallel * series
     current = state.current_reference
     if reu.dither > 0.0 and device.is_on:

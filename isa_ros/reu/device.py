@@ -23,7 +23,7 @@ from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block_drive import BlockWiring, open_lines
-from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
+from isa_ros.reu.bumpless import EVERY_BLOCK, FADE, start_setpoint, take_over
 from isa_ros.reu.flow_stop import (
     FLOW_STOP, FLOW_STOP_STATE, has_stood, stands, watch_load)
 from isa_ros.reu.impedance import SETPOINT
@@ -245,7 +245,7 @@ def take_over_bumpless(acting, was_on, was_stopping, reu, state):
     """Start the blocks of a mode at the present references, without a jump of the current."""
     own = state.status
     reference = take_over(own.acting if was_on else NO_MODE, acting, reu, state)
-    own.fade.begins = 1
+    own.fade.begins = EVERY_BLOCK
     if (was_on and not own.is_stopping and not was_stopping
             and not own.requests & (HAS_SETPOINT | HAS_REFERENCE)):
         start_setpoint(acting, reference, state)

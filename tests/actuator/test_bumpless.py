@@ -63,6 +63,29 @@ def test_the_current_does_not_jump_between_any_two_modes(model, variants):
         assert actuator.sample.device_mode == second
 
 
+CHANGES = {
+    'kp': lambda own: own.tune({'force.kp': 0.3 * own.parameter('force.kp')}),
+    'stiffness': lambda own: own.tune(
+        {'position.stiffness': 0.3 * own.parameter('position.stiffness')}),
+    'force': lambda own: own.change_mode('force'),
+    'spool': lambda own: own.change_mode('spool')}
+
+
+@pytest.mark.parametrize('late', [1, 2, 5, 8])
+@pytest.mark.parametrize('change', CHANGES)
+def test_the_current_does_not_jump_when_a_block_runs_later_than_the_change(change, late):
+    """Not at the next conversion, nor where a slower block runs first; in between it moves."""
+    actuator = moving('isa_v5')
+    before = currents(actuator, MOVING + late)[-1]
+    CHANGES[change](actuator)
+    jumps = abs(np.diff(currents(actuator, 12), prepend=before))
+    inner, outer = -late % 2, -late % 10     # 5 kHz and 1 kHz at conversions of 10 kHz
+    first_runs = {0, inner} | ({outer} if actuator.sample.device_mode == IMPEDANCE else set())
+    assert jumps[sorted(first_runs)].max() < ROUNDING
+    if change != 'spool':   # there the current is constant
+        assert jumps[sorted({inner + 2, inner + 4} - first_runs)].min() > 1e3 * ROUNDING
+
+
 def test_without_the_fade_the_same_changes_jump():
     """With a time constant far below a period the jump is there one period later."""
     def force(own):

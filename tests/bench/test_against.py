@@ -1,5 +1,6 @@
 """This checkout against a revision: its files, the order of the runs, and the ratios."""
 
+from pathlib import Path
 import subprocess
 import sys
 
@@ -85,10 +86,19 @@ def test_the_ratio_is_the_median_of_those_of_pairs():
     assert host.note == '1.0 us before, 2.0 us now'
 
 
+def package_in(root: Path) -> Path:
+    """Make an empty package isa_ros; without ``__init__.py`` an installed one would come first."""
+    package = root / 'isa_ros'
+    package.mkdir()
+    (package / '__init__.py').touch()
+    return package
+
+
 def test_a_run_is_that_of_the_files_it_is_given(tmp_path):
     """Its own module is found there first, and its values are read by two keys only."""
-    package = tmp_path / 'isa_ros' / 'bench'
-    package.mkdir(parents=True)
+    package = package_in(tmp_path) / 'bench'
+    package.mkdir()
+    (package / '__init__.py').touch()
     (package / 'measure.py').write_text(
         'import json, sys\n'
         'json.dump({"processor": {"a": 3e-6, "b": 1e-6}, "ticks_per_s": 4000.0, "old": 1}, '
@@ -109,8 +119,7 @@ def test_a_run_that_does_not_end_is_refused(tmp_path, monkeypatch):
 
 def test_a_module_of_another_root_comes_first(tmp_path):
     """Also where the process itself stands in a checkout."""
-    (tmp_path / 'isa_ros').mkdir()
-    (tmp_path / 'isa_ros' / 'where.py').write_text('print(__file__)\n')
+    (package_in(tmp_path) / 'where.py').write_text('print(__file__)\n')
     ended = child.run_module('isa_ros.where', [], 60.0, tmp_path)
     assert ended.stdout.strip() == str(tmp_path / 'isa_ros' / 'where.py'), ended.stderr
     assert sys.path[0] != str(tmp_path)

@@ -60,8 +60,8 @@ def called(package: Path, program: str = MAIN, **environment: str) -> tuple[str,
     kept = {name: value for name, value in os.environ.items()
             if name not in ('NUMBA_CACHE_DIR', 'XDG_CACHE_HOME', 'HOME')}
     done = subprocess.run(
-        [sys.executable, '-c', program], env=kept | {'PYTHONPATH': str(package)} | environment,
-        cwd=package, capture_output=True, text=True, timeout=120.0)
+        [sys.executable, '-B', '-c', program],   # two edits may fall into one second of a .pyc
+        env=kept | {'PYTHONPATH': str(package)} | environment, cwd=package, capture_output=True, text=True, timeout=120.0)
     assert done.returncode == 0, done.stderr
     return done.stdout, done.stderr
 

@@ -5,6 +5,7 @@ from isa_ros.core.device import (
 from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block_drive import LONG_AGO
+from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.device import device_step
 from isa_ros.reu.protection import BLOCK, DISABLE, NONE
 import pytest
@@ -58,7 +59,7 @@ def test_the_outputs_wait_for_the_valves_to_open_and_both_go_off_together():
     assert driven.seen == (ENABLED, False, True)
     assert driven.own.is_open == 0
     assert driven.until(lambda: driven.own.is_on) == pytest.approx(OPENING, abs=1.1e-4)
-    assert driven.own.fade.begins == 1      # the blocks take over without a jump
+    assert driven.own.fade.begins == EVERY_BLOCK   # they take over without a jump
     assert driven.own.is_open == 1
     driven.ask(HAS_ENABLE, 0)
     assert driven.seen == (DISABLED, False, False) and driven.own.is_open == 0

@@ -10,6 +10,7 @@ from isa_ros.export.fmi.tuned import Tuned
 from isa_ros.export.fmi.variables import Home, Type, Variable
 from isa_ros.export.layout import ALIGNED
 from isa_ros.export.tables import number, quoted
+from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.wiring import possible_modes
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
@@ -56,7 +57,7 @@ def _declared() -> Iterator[str]:
         'extern const struct call BEFORE[], AFTER[];', 'extern const struct tuned TUNED[];',
         'extern const size_t BEFORE_COUNT, AFTER_COUNT, TUNED_COUNT;', '',
         '/* Of the actuator: whether its loops are on, and a current without a jump. */',
-        'extern const int32_t IS_ON, FADE;',
+        'extern const int32_t IS_ON, FADE, EVERY_BLOCK;',
         'void ISA(put_number)(ISA(t) *self, int32_t place, double value);',
         'int64_t *ISA(flag)(ISA(t) *self, int32_t place);')
 
@@ -99,7 +100,7 @@ def source(
         f'const size_t BEFORE_COUNT = {split}, AFTER_COUNT = {len(calls) - split};',
         f'const size_t TUNED_COUNT = {len(may_change)};',
         f'const int32_t IS_ON = {of_actuator.place(status["is_on"])}, '
-        f'FADE = {of_actuator.place(status["fade"]["begins"])};', ''])
+        f'FADE = {of_actuator.place(status["fade"]["begins"])}, EVERY_BLOCK = {EVERY_BLOCK};', ''])
 
 
 def _array(name: str, rows: Iterable[str]) -> Iterator[str]:

@@ -70,7 +70,8 @@ static void take_parameters(unit_t *unit)
     ISA(put_number)(unit->actuator, TUNED[k].place, unit->given.inputs[TUNED[k].input]);
     has_any = 1;
   }
-  if (has_any && *ISA(flag)(unit->actuator, IS_ON)) *ISA(flag)(unit->actuator, FADE) = 1;
+  if (has_any && *ISA(flag)(unit->actuator, IS_ON))
+    *ISA(flag)(unit->actuator, FADE) = EVERY_BLOCK;
 }
 
 /* Fill the port as the load is `after` s behind the begin of the step. */
