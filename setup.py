@@ -55,6 +55,7 @@ setup(
         shared('config/measurements', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
         shared('launch', '*.launch.py'),
+        shared('layouts', '*.*'),
         shared('rviz', '*.rviz'),
         shared('urdf', '*.urdf'),
     ],

@@ -115,7 +115,7 @@ def copy_of_clone(tmp_path: Path) -> Path:
     copy = tmp_path / 'clone'
     copy.mkdir()
     for name in ('isa_ros', 'msg_adapters', 'benchmarks', 'scripts', 'bin', 'config', 'launch',
-                 'rviz', 'urdf', 'resource'):
+                 'layouts', 'rviz', 'urdf', 'resource'):
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns('__pycache__'))
     for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'README.md', 'LICENSE'):

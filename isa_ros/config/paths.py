@@ -17,7 +17,7 @@ CONTROLLERS = 'config/controllers'
 
 
 def share_directories() -> list[Path]:
-    """Return the directories that may hold config/, launch/, rviz/, urdf/, the nearest first."""
+    """Return the directories that may hold config/, layouts/, rviz/, urdf/, the nearest first."""
     package = Path(__file__).resolve().parents[1]
     found = [package.parent] if (package.parent / 'package.xml').is_file() else []
     # A merged or isolated colcon install, and a wheel: PREFIX/lib/python3.x/site-packages.
@@ -40,7 +40,7 @@ def shipped(directory: str) -> dict[str, Path]:
 
 def find_drawing(name: str) -> Path:
     """
-    Return a shipped file below ``urdf`` or ``rviz``, such as ``urdf/hyq_real_leg.urdf``.
+    Return a shipped file below ``urdf``, ``rviz`` or ``layouts``, such as ``rviz/leg.rviz``.
 
     Raises
     ------

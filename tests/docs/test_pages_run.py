@@ -11,7 +11,8 @@ from tests.ros.started import is_alive, wait_for
 
 DOCS = Path(__file__).parents[2] / 'docs'
 PAGES = {
-    'c_controller': 3, 'controller': 9, 'coupling': 1, 'lesson_pressure': 3, 'lockstep': 1,
+    'c_controller': 3, 'controller': 9, 'coupling': 1, 'layouts': 1, 'lesson_pressure': 3,
+    'lockstep': 1,
     'pump_sizing': 3, 'reproduce': 8, 'signs': 1, 'tutorial': 12}
 """Pages, and how many of their blocks are run or written to a file."""
 

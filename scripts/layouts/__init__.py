@@ -1,0 +1,1 @@
+"""Layouts of plotting tools, made of what a run publishes: `python -m scripts.write_layouts`."""
