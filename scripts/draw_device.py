@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.controller import Setpoint
 from isa_ros.core.device import EVENTS, MODES, STATES

@@ -3,8 +3,9 @@
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import build, build_one_of

@@ -9,7 +9,7 @@ import isa_ros
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import Rerun
@@ -34,7 +34,7 @@ def here(tmp_path_factory) -> Path:
     golden = Bag(GOLDEN / 'rotor_step')
     directory = tmp_path_factory.mktemp('here') / 'drop'
     own = golden.provenance
-    own = type(own)(RunConfig.from_yaml(own.configuration).to_yaml(), own.scenario, 0,
+    own = type(own)(run_of_text(own.configuration).to_yaml(), own.scenario, 0,
                     installed_versions())
     again = Rerun(golden)
     with BagWriter(directory, again.topics, own) as writer:

@@ -5,52 +5,34 @@ The same class is used by a single node, by many nodes in one process, and by re
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
-import hashlib
 from typing import NoReturn
 
 from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.constants import digest_of, write_constants
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
-from isa_ros.actuator.link import link_key, NONE
-from isa_ros.actuator.requests import (
-    link_answer, mode_after, mode_command, refusal_of, start_mode)
+from isa_ros.actuator.link import NONE
+from isa_ros.actuator.requests import link_answer, mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.rest import put_at_rest
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
-from isa_ros.actuator.sheet import actuator_record
 from isa_ros.actuator.ticking import bound_tick, ticked
+from isa_ros.actuator.timing import Timing
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, position_after, Tuning
 from isa_ros.core.bound import Bound
-from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import TIME_BYTES, time_of
-from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.loads.sheets import own_record, static_force
+from isa_ros.loads.sheets import static_force
 from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 PAPER_SUPPLY = 20.7e6
 """Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
-
-
-@dataclass(frozen=True)
-class Timing:
-    """Tick, offset of the REU's sampling instants, ns; seed of noise; stamps at t = 0, ns."""
-
-    step_ns: int
-    controller_offset_ns: int
-    seed: int = 0
-    start_ns: int = 0
-
-    @property
-    def steps(self) -> int:
-        """Return the plant steps of one tick, a multiple of the force windows."""
-        return steps_in(self.step_ns // FORCE_WINDOWS, 'a fifth of step_ms') * FORCE_WINDOWS
 
 
 class SmartActuator:
@@ -71,19 +53,14 @@ class SmartActuator:
         """Its row in the memory of the tick kernel."""
         self._config = config
         self._timing = timing
-        self.memory.is_shared[0] = config.load is None
-        offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
-        constants = self.memory.constants
-        constants[:] = actuator_record(config.sheet, offset_steps)
-        constants['load'] = own_record(config.load)
-        constants['noise_key'] = noise_key(timing.seed, config.name)
-        constants['link_key'] = link_key(timing.seed, config.name)
+        write_constants(config, timing, self.memory)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
         self.saved = SavedRows(config.name, self.memory, self.has_link)
         """The rows that are its state."""
         # Rows with their fields as attributes, on the same memory.
-        self._constants, self._body = row_record(constants), row_record(self.memory.continuous)
+        self._constants, self._body = (
+            row_record(rows) for rows in (self.memory.constants, self.memory.continuous))
         self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
         self._applied, self._reply, self._sample = (
             row_record(rows) for rows in (
@@ -92,23 +69,16 @@ class SmartActuator:
         """Its tick's memory: ports, command and clock."""
         self._commands = self.ticked.commands
         self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
-        self.digest = self._hash(constants)
+        self.digest = digest_of(config, timing, self._first_mode, self.memory)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
         self.tuning = Tuning(
-            config.name, config.sheet, offset_steps, constants, config.load, self.memory.ports,
-            timing.step_ns / NS_PER_SECOND,
+            config.name, config.sheet, timing.offset_steps, self.memory.constants, config.load,
+            self.memory.ports, timing.step_ns / NS_PER_SECOND,
             row_record(self.memory.links) if self.has_link else None)
         """Tuned parameters, accepted and in force."""
         self._changed_mode: str | None = None
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
-
-    def _hash(self, constants: np.ndarray) -> str:
-        """Return a hash of every resolved parameter."""
-        own = self._config
-        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self._first_mode} '
-                f'{own.auto_enable}')
-        return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
     def start(
             self, position: float, force: float,
@@ -323,9 +293,3 @@ class SmartActuator:
         self.tuning.restore(snapshot[TIME_BYTES + self.saved.nbytes:])
         self.t_ns = t_ns
         self.saved.restore(found)
-
-
-def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
-    """Return a hash of the parameters and the timing of an actuator."""
-    return (f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}/'
-            f'{timing.start_ns}')

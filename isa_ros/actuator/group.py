@@ -5,12 +5,13 @@ import struct
 from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
 from isa_ros.actuator.ticking import bound_tick, ticked
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError

@@ -21,8 +21,9 @@ from isa_ros.core.parameter import check
 from isa_ros.core.units import in_si, of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import linearised, LocalLoad
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.plant.step_limits import refuse_too_fast
 from isa_ros.reu.wiring import active, VARIABLES
 
 GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}

@@ -4,8 +4,8 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from isa_ros.cli.commands import print_line, recorded, simulating
 from isa_ros.cli.run_arguments import DESCRIBE
+from isa_ros.cli.running import print_line, recorded, simulating
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.fieldbus.request import BUSES, BusRequest
 from isa_ros.run.options import request_of_arguments

@@ -5,36 +5,19 @@ Modules are imported in the functions, so that `isa --help` does not import numb
 """
 
 from argparse import Namespace
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-import errno
-from functools import wraps
+from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 import sys
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
+from isa_ros.cli.running import print_line, record, simulating
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.run.option import namespace
 from isa_ros.run.options import Request, request_of_arguments
 
-if TYPE_CHECKING:
-    from isa_ros.run.session import Report, Session
-
 RUNS = Path('runs')  # default directory of demos
-
-Command = Callable[[Namespace], bool]
-
-
-def simulating(command: Command) -> Command:
-    """Return a command that reports when kernels are compiled."""
-    @wraps(command)
-    def reporting(options: Namespace) -> bool:
-        from isa_ros.run.compiling import reported_compilation
-        with reported_compilation('isa'):
-            return command(options)
-    return reporting
 
 
 @simulating
@@ -47,7 +30,7 @@ def demo(options: Namespace) -> bool:
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
         raise BagError(f'{out} already exists; a demo does not overwrite it')
-    bag = _record(Request(
+    bag = record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone)).out
     found = read_recorded(bag)
@@ -55,51 +38,6 @@ def demo(options: Namespace) -> bool:
     print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(found.signals)}\n')
     print(f'{text_of(found.accounts)}\n\n{next_steps_text(bag)}')
     return True
-
-
-def _record(request: Request) -> 'Session':
-    """Run, print the paths of its bags and what happened, also after an error."""
-    from isa_ros.run.session import prepare
-    session = prepare(request)
-
-    def run(report: 'Report | None') -> None:
-        # The import of rclpy takes a third of a second; do it after the options are checked.
-        from isa_ros.nodes.bringup import run_session
-        run_session(session, report)
-    recorded(session, run)
-    return session
-
-
-def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None:
-    """Print the warnings of a session, run it, and print the paths of its bags."""
-    from isa_ros.run.terminal import terminal_report
-    for line in session.warnings:
-        print_line(line)
-    try:
-        run(terminal_report(sys.stderr))
-    finally:
-        with _even_without_terminal():
-            for bag in session.bags:
-                print(bag)
-            for line in session.lines:
-                print_line(line)
-            if session.pace.shortfall:
-                print_line(session.pace.shortfall)
-
-
-def print_line(line: str) -> None:
-    """Print a line about a run for the user."""
-    print(one_line(f'isa: {line}'), file=sys.stderr, flush=True)
-
-
-@contextmanager
-def _even_without_terminal() -> Iterator[None]:
-    """Print nothing on a terminal that was closed: the run ends by its SIGHUP."""
-    try:
-        yield
-    except OSError as error:
-        if error.errno != errno.EIO:
-            raise
 
 
 def _demo_directories() -> Iterator[Path]:
@@ -111,7 +49,7 @@ def _demo_directories() -> Iterator[Path]:
 @simulating
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
-    session = _record(request_of_arguments(vars(options), is_alone=options.is_alone))
+    session = record(request_of_arguments(vars(options), is_alone=options.is_alone))
     return session.is_as_wanted
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple, TYPE_CHECKING
 
 from isa_ros.cli import shared_arguments
-from isa_ros.cli.commands import print_line, simulating
+from isa_ros.cli.running import print_line, simulating
 
 if TYPE_CHECKING:
     from isa_ros.core.objects import Target

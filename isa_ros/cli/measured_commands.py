@@ -5,7 +5,7 @@ from argparse import Namespace
 from pathlib import Path
 import sys
 
-from isa_ros.cli.commands import simulating
+from isa_ros.cli.running import simulating
 from isa_ros.cli.shared_arguments import changes, figure_to_write, json_file, positive
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.errors import ConfigError

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.body_config import BodyFactory, Made
 from isa_ros.config.runs.external_config import at_rest
 from isa_ros.config.runs.run_config import RunConfig

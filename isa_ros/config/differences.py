@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.tunable import tunables
 from isa_ros.config.listing import rows
-from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.run_config import RUN
+from isa_ros.config.runs.run_reading import run_of_tree
 from isa_ros.config.runs.supplies import SUPPLY
 from isa_ros.config.text.keys import differences, KeyDifference
 from isa_ros.config.text.sections import Place
@@ -98,7 +99,7 @@ def modern(tree: Tree) -> Tree:
 def _units(tree: Tree) -> dict[str, str]:
     """Return the unit of every number by key; of nothing where another version wrote it."""
     try:
-        run = RunConfig.from_tree(tree, '')
+        run = run_of_tree(tree, '')
     except ConfigError:
         return {}
     units: dict[str, str] = {}

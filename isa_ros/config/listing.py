@@ -13,7 +13,8 @@ from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
 from isa_ros.config.runs.robots import FileOf, run_with_robots
-from isa_ros.config.runs.run_config import Origins, RUN, RunConfig
+from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.run_reading import Origins
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.keys import Leaf
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members

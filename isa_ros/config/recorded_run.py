@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from isa_ros.config.differences import modern
 from isa_ros.config.models.catalogue import leg_names, model_names
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_tree
 from isa_ros.config.text.yaml_text import parse, Tree
 from isa_ros.errors import ConfigError
 
@@ -41,10 +42,10 @@ def recorded_run(text: str, name: str) -> RecordedRun:
     """
     tree = parse(text, name)
     try:
-        return RecordedRun(RunConfig.from_tree(tree, name), '')
+        return RecordedRun(run_of_tree(tree, name), '')
     except ConfigError as error:
         try:
-            return RecordedRun(RunConfig.from_tree(_stand_in(modern(tree)), name), str(error))
+            return RecordedRun(run_of_tree(_stand_in(modern(tree)), name), str(error))
         except (ConfigError, AttributeError, KeyError, TypeError):
             raise error from None
 

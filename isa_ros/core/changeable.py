@@ -158,3 +158,10 @@ def with_changes(
         return replaced_together(parameters, changed)
     except ParameterError as error:
         raise ParameterError(f'{", ".join(changed)}: {error}') from error
+
+
+def with_own_changes(parameters: P, owner: str, values: Mapping[str, float]) -> P:
+    """Return a set with those of ``values`` whose name is OWNER.KEY; raises as `with_changes`."""
+    prefix = f'{owner}.'
+    own = {name: value for name, value in values.items() if name.startswith(prefix)}
+    return with_changes(parameters, changeables(parameters, prefix), own)

@@ -6,9 +6,10 @@ not finite is neither written nor read: by `RunState` in the requests, by actuat
 bodies in their own states.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import hashlib
+from itertools import accumulate
 import json
 from pathlib import Path
 from typing import Any
@@ -131,6 +132,23 @@ def restored_rows(
         raise ConfigError(
             f'{owner}: saved state has {broken[0]} = {broken[1]}, must be finite')
     return rows
+
+
+def cut(snapshot: bytes, sizes: Sequence[int], owner: str) -> list[bytes]:
+    """
+    Return consecutive parts of a snapshot of these sizes.
+
+    Raises
+    ------
+    ConfigError
+        It has another length; ``owner`` names whose state it is.
+
+    """
+    ends = list(accumulate(sizes))
+    if len(snapshot) != ends[-1]:
+        raise ConfigError(
+            f'saved state of {owner} has {len(snapshot)} bytes, must have {ends[-1]}')
+    return [snapshot[end - size:end] for size, end in zip(sizes, ends)]
 
 
 def time_of(snapshot: bytes, step_ns: int, owner: str) -> int:

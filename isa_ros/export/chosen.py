@@ -11,7 +11,8 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.actuator_config import ActuatorConfig
 from isa_ros.config.runs.model_run import full_key, model_run
 from isa_ros.config.runs.robots import run_with_robots
-from isa_ros.config.runs.run_config import Origins, RunConfig
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import Origins
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree

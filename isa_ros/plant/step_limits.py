@@ -1,45 +1,29 @@
 """
 Parameters that are too fast for the plant's step, found before a run breaks.
 
-The plant is linearised where it is fastest: in its end stops, without friction's slip, with the
-valve closed and wide open; the eigenvalues tell whether the step damps what the equations damp.
+`isa_ros.plant.linearised` has the equations; here are the parameters that they come from.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP, PLANT_STEP_NS
+from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.core.units import MILLI, of_coordinate, quantity
 from isa_ros.errors import ParameterError
-from isa_ros.plant.coil import EXPLICIT
 from isa_ros.plant.hose import soft_volume
+from isa_ros.plant.linearised import fastest_rate, is_followed, LoadSide
 from isa_ros.plant.load_holding import least_lag, NO_HOLDING
 from isa_ros.plant.plant import MotorPlant, RotaryPlant
-from isa_ros.plant.servo_valve import flow_curve
-from isa_ros.plant.spool import DIRECT, PILOTED
 from isa_ros.plant.thermal import coldest, warm
 import numpy as np
-from numpy.typing import NDArray
 
-_ROUNDED = 1e-9     # the growth of a state at rest, whose eigenvalue is 0, by rounding
 _FACTORS = 1e9      # a parameter is looked for between a value and that many times less or more
 _HALVINGS = 60
 _NAMED = 5          # parameters in one message
 _SLOWER = 0.9           # half of a parameter that makes the plant fast leaves less of its rate
 _HOTTEST = 120.0    # celsius: beyond it seals fail, and mineral oil decays
-
-
-@dataclass(frozen=True)
-class LoadSide:
-    """The load's side of the force sensor, linearised; units of the actuator."""
-
-    inertia: float = math.inf   # kg | kg m2; inf: not known here
-    stiffness: float = 0.0      # to ground, N/m | Nm/rad
-    damping: float = 0.0        # to ground, Ns/m | Nms/rad
-    names: tuple[str, str, str] = ('inertia', 'stiffness', 'damping')
-    """Names of the three in the load's sheet."""
 
 
 class _Knob(NamedTuple):
@@ -117,7 +101,7 @@ def _refuse_lags(plant: np.record) -> None:
 
 def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
     """Refuse a `PLANT` record as `refuse_too_fast`; ``when`` ends the message."""
-    if _is_followed(plant, load):
+    if is_followed(plant, load):
         return
     changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, sheet, load)]
     changes.sort(key=lambda change: change.size)
@@ -131,20 +115,14 @@ def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
 
 def _reasons(plant: np.record, sheet: object, load: LoadSide) -> list[str]:
     """Return the parameters of which no single one suffices, but half of it slows the plant."""
-    fastest, found = _fastest(plant, load), []
+    fastest, found = fastest_rate(plant, load), []
     for knob, value, unit in _values(sheet):
         def follows(factor: float) -> bool:
-            return _is_followed(_scaled(plant, knob, factor), load)
-        slower = _fastest(_scaled(plant, knob, 0.5 if knob.less_helps else 2.0), load)
+            return is_followed(_scaled(plant, knob, factor), load)
+        slower = fastest_rate(_scaled(plant, knob, 0.5 if knob.less_helps else 2.0), load)
         if slower < _SLOWER * fastest and _least_factor(follows, knob.less_helps) is None:
             found.append(f'plant.{knob.name} = {quantity(f"{value:g}", unit)}')
     return found
-
-
-def _fastest(plant: np.record, load: LoadSide) -> float:
-    """Return the largest magnitude of all eigenvalues, 1/s."""
-    return max(float(np.abs(np.linalg.eigvals(matrix)).max())
-               for matrix in _matrices(plant.view(np.recarray), load))
 
 
 class _Change(NamedTuple):
@@ -165,7 +143,7 @@ class _Change(NamedTuple):
 def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
     for knob, value, unit in _values(sheet):
         def follows(factor: float) -> bool:
-            return _is_followed(_scaled(plant, knob, factor), load)
+            return is_followed(_scaled(plant, knob, factor), load)
         factor = _least_factor(follows, knob.less_helps)
         if factor is not None:
             found = _change(f'plant.{knob.name}', value, unit, factor, knob.less_helps)
@@ -209,7 +187,7 @@ def _changes_of_load(plant: np.record, sheet: object, load: LoadSide) -> Iterato
         value = getattr(load, field)
 
         def follows(factor: float) -> bool:
-            return _is_followed(plant, replace(load, **{field: value * factor}))
+            return is_followed(plant, replace(load, **{field: value * factor}))
         if 0.0 < value < math.inf and (
                 factor := _least_factor(follows, less_helps)) is not None:
             yield _change(f'load.{name}', value, of_coordinate(unit, _is_rotary(sheet)), factor,
@@ -235,106 +213,3 @@ def _least_factor(follows: Callable[[float], bool], less_helps: bool) -> float |
         else:
             too_little = middle
     return float(widest ** enough)
-
-
-def _is_followed(plant: np.record, load: LoadSide) -> bool:
-    """Return whether a step damps what the equations damp, in every linearised state."""
-    return all(_damps(matrix) for matrix in _matrices(plant.view(np.recarray), load))
-
-
-def _damps(matrix: NDArray[np.float64]) -> bool:
-    """Return whether RK4 damps all eigenvalues of the left half plane, |R(h lambda)| <= 1."""
-    if not np.isfinite(matrix).all():
-        return False
-    z = PLANT_STEP * np.linalg.eigvals(matrix)
-    growth = np.abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))))
-    return bool(((growth <= 1.0 + _ROUNDED) | (z.real > _ROUNDED)).all())
-
-
-def _matrices(plant: np.record, load: LoadSide) -> Iterator[NDArray[np.float64]]:
-    yield _coil(plant.coil)
-    yield _spool(plant.spool)
-    for place in (0.0, plant.chambers.stroke):
-        for is_open in (False, True):
-            yield _actuator(plant, load, place, is_open)
-        cushion = plant.cushion_a if place == 0.0 else plant.cushion_b
-        if cushion.is_on:
-            for is_open in (False, True):
-                yield _trapped(plant, load, place, is_open, cushion)
-
-
-def _coil(coil: np.record) -> NDArray[np.float64]:
-    """Return d(i, m, m')/dt of V1 or V11."""
-    if coil.kind != EXPLICIT:
-        return np.array([[-coil.p_c]])
-    w = coil.mode_w
-    return np.array([
-        [-coil.resistance / coil.inductance, 0.0, 0.0],
-        [0.0, 0.0, 1.0], [w * w, -w * w, -2.0 * coil.mode_zeta * w]])
-
-
-def _spool(spool: np.record) -> NDArray[np.float64]:
-    """Return d(x, x', x'')/dt of V3, V10 or V13."""
-    w, zeta = spool.w_n, spool.zeta
-    if spool.kind == DIRECT:
-        return np.array([[0.0, 1.0], [-w * w, -2.0 * zeta * w]])
-    k_loop = 0.0 if spool.kind == PILOTED else spool.k_loop
-    return np.array([
-        [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-w * w * k_loop, -w * w, -2.0 * zeta * w]])
-
-
-def _actuator(
-        plant: np.record, load: LoadSide, place: float, is_open: bool) -> NDArray[np.float64]:
-    """Return d(s, v, z, P_A, P_B, x, w)/dt in an end stop at ``place`` (M4, F3, C2)."""
-    own, rubs, oil = plant.mechanics, plant.friction, plant.chambers
-    m, per_load = own.inertia, 1.0 / load.inertia
-    damping = rubs.sigma1 + rubs.sigma2 + own.d_s + own.d_stop
-    per_a = oil.beta / (oil.dead_volume + oil.swept_a * place)
-    per_b = oil.beta / (oil.dead_volume + oil.swept_b * (oil.stroke - place))
-    open_a, open_b = _conductances(plant.valve, is_open)
-    open_a, open_b = min(open_a, FASTEST_RATE / per_a), min(open_b, FASTEST_RATE / per_b)
-    if plant.hoses.is_on:   # through which a chamber decays at most at half of it  (C42)
-        open_a, open_b = 0.5 * FASTEST_RATE / per_a, 0.5 * FASTEST_RATE / per_b
-    spring, holds = plant.spring, oil.holds_b
-    if holds == 0.0:
-        open_b = FASTEST_RATE / per_b
-    return np.array([
-        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [-(own.k_s + own.k_stop + spring.stiffness) / m, -damping / m, -rubs.sigma0 / m,
-         oil.area_a / m, -oil.area_b / m, own.k_s / m, own.d_s / m],
-        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [0.0, -per_a * oil.area_a, 0.0, -per_a * (oil.c_li + open_a), per_a * oil.c_li, 0.0, 0.0],
-        [0.0, holds * per_b * oil.area_b, 0.0, holds * per_b * oil.c_li,
-         -per_b * (oil.c_li + open_b), 0.0, 0.0],
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-        [own.k_s * per_load, own.d_s * per_load, 0.0, 0.0, 0.0,
-         -(own.k_s + load.stiffness) * per_load, -(own.d_s + load.damping) * per_load]])
-
-
-def _trapped(
-        plant: np.record, load: LoadSide, place: float, is_open: bool,
-        cushion: np.record) -> NDArray[np.float64]:
-    """Return `_actuator` of shut lands with the pressure behind a spear as last state  (C30)."""
-    oil, m = plant.chambers, plant.mechanics.inertia
-    found = np.zeros((8, 8))
-    found[:7, :7] = _actuator(plant, load, place, False)
-    port, sign, area = (3, 1.0, oil.area_a) if place == 0.0 else (4, -1.0, oil.area_b)
-    per, swept = oil.beta / cushion.dead, sign * cushion.area
-    wide = oil.beta / (oil.dead_volume - cushion.dead)      # of the port's side
-    found[port, :] *= wide * oil.dead_volume / oil.beta
-    found[port, 1] = -wide * sign * (area - cushion.area)
-    found[1, port] -= swept / m
-    found[1, 7], found[7, 1] = swept / m, -per * swept
-    link = FASTEST_RATE / (per + wide) if is_open else 0.0
-    found[7, 7] = -per * link
-    found[7, port] = per * link
-    found[port, port] -= wide * link
-    found[port, 7] = wide * link
-    return found
-
-
-def _conductances(valve: np.record, is_open: bool) -> tuple[float, float]:
-    """Return at least dQ/dP of both chambers at no drop over their lands, m3/s/Pa  (V5, V7)."""
-    flow = 2.0 * valve.q_0 + (flow_curve(valve.x_max, valve) if is_open else 0.0)
-    per_flow = flow * valve.per_root_drop / math.sqrt(valve.delta)
-    return max(valve.f_pa, valve.f_at) * per_flow, max(valve.f_pb, valve.f_bt) * per_flow

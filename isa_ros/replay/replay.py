@@ -18,6 +18,7 @@ from isa_ros.bag.provenance import versions_of
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.changing_values import RECORDED
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
@@ -124,7 +125,7 @@ class Rerun:
     """
 
     def __init__(self, bag: Bag) -> None:
-        self._run = RunConfig.from_yaml(
+        self._run = run_of_text(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
         self._inputs = recorded_inputs(bag, self._run)
         self._commanded = sorted(self._inputs.commands)

@@ -17,7 +17,8 @@ from isa_ros.core.units import MILLI, PERCENT
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.bumpless import faded, inner_reference
-from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
+from isa_ros.reu.device import device_step
+from isa_ros.reu.device_record import DEVICE, device_record, DEVICE_STATE
 from isa_ros.reu.dither import dither
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)

@@ -11,6 +11,7 @@ from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.bag.message_chunk import Chunk, Layouts
 from isa_ros.config.assembly import bodies_in_form, group_of, surroundings_in_form
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.output import packer_of
@@ -67,7 +68,7 @@ def _other_process(configuration: str) -> Iterator['subprocess.Popen[str]']:
 
 def compile_surroundings() -> None:
     """Compile body and supplies of the configuration on standard input, of actuators at rest."""
-    run = RunConfig.from_yaml(sys.stdin.read())
+    run = run_of_text(sys.stdin.read())
     surroundings = surroundings_in_form(run)
     surroundings.starts()
     surroundings.ports(np.zeros(len(run.actuators), LOAD_PORT))

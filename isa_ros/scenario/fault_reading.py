@@ -43,8 +43,8 @@ from isa_ros.scenario.fault_courses import RAMP
 from isa_ros.scenario.faults import BODY, BUS, Fault
 from isa_ros.scenario.part_faults import PART, part_prefix, supply_values
 from isa_ros.scenario.waveforms import WAVEFORMS
+from isa_ros.surroundings.emergency_line import EMERGENCY_STOP, OPEN
 from isa_ros.surroundings.supply import SupplySheet
-from isa_ros.surroundings.surroundings import EMERGENCY_STOP, OPEN
 
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""

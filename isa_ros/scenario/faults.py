@@ -18,7 +18,7 @@ from isa_ros.core.changing_values import OFF, OVER
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.fault_courses import Course
 from isa_ros.scenario.waveforms import MOVES, Waveform, WAVEFORMS
-from isa_ros.surroundings.surroundings import EMERGENCY_STOP, line_of
+from isa_ros.surroundings.emergency_line import EMERGENCY_STOP, line_of
 
 BUS = 'bus'
 """Of an actuator's connection to the bus of `isa bus`, beside `KINDS`."""

@@ -25,7 +25,7 @@ from isa_ros.config.text.sections import overlaid, Place, refuse_unknown, sectio
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import TARGETS
-from isa_ros.surroundings.surroundings import EMERGENCY_STOP
+from isa_ros.surroundings.emergency_line import EMERGENCY_STOP
 
 _BY_NAME = ('tracks', 'loads', 'bodies', CONTROLLERS)
 _LISTS = ('faults', 'changes')

@@ -28,6 +28,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.changes_together import refuse_changes
 from isa_ros.scenario.fault_reading import read_faults
 from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
+from isa_ros.scenario.figures import figure_of
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.rig_changes import refuse_stranger, with_loads, with_starts
 from isa_ros.scenario.robots import with_robots
@@ -35,11 +36,6 @@ from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
 import numpy as np
 from numpy.typing import NDArray
-
-FIGURES = (
-    'position_torque_tracking', 'torque_step', 'force_step', 'impact', 'weight', 'knee_sine',
-    'leg_drop', 'valve_response', 'flow_gain', 'leakage', 'current_step', 'bandwidth')
-"""Figures of the paper that a scenario may be drawn as; `analysis.report` draws them."""
 
 BEYOND = 'beyond_range'
 
@@ -283,23 +279,6 @@ def _accepts_beyond(tree: Tree, place: Place) -> bool:
         return False
     check(str(place / BEYOND), tree[BEYOND], {'names': (ACCEPT,)})
     return True
-
-
-def figure_of(tree: Tree, place: Place) -> str | None:
-    """
-    Return the figure that a scenario is drawn as, None for a scenario without the key.
-
-    Raises
-    ------
-    ConfigError
-        The figure does not exist.
-
-    """
-    figure = tree.get('figure')
-    if figure is None or figure in FIGURES:
-        return figure
-    raise ConfigError(
-        f"{place / 'figure'} = {figure!r} is not a figure; {alternatives(str(figure), FIGURES)}")
 
 
 def _duration(value: Any, step_ns: int, where: str) -> int:

@@ -22,10 +22,11 @@ from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.parameter import nested, parameter, Parameters
 from isa_ros.core.record import floats
+from isa_ros.core.saved_state import broken_number
 from isa_ros.core.signals import LOAD_REPLY, Records, SUPPLY_REPLY
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MPA
-from isa_ros.errors import ParameterError
+from isa_ros.errors import ParameterError, RunError
 from isa_ros.surroundings import supply_tick as tick
 from isa_ros.surroundings.accumulator import (
     AccumulatorSupply, capacitance, SUPPLY, supply_record)
@@ -85,8 +86,20 @@ SUPPLY_STATE = record_type(SUPPLY_FIELDS[:-1])
 """What a saved state has of it: a circuit has the temperature in its own state."""
 
 
-def saved_states(samples: Records) -> bytes:
-    """Return the `SUPPLY_STATE` of samples, (n,)."""
+def saved_states(samples: Records, names: Sequence[str]) -> bytes:
+    """
+    Return the `SUPPLY_STATE` of samples, (n,), of supplies of these names.
+
+    Raises
+    ------
+    RunError
+        The pressure or flow of a supply is not finite.
+
+    """
+    for k, name in enumerate(names):
+        broken = broken_number(samples[k:k + 1])
+        if broken is not None:
+            raise RunError(f'{name}: {broken[0]} = {broken[1]}, must be finite to be saved')
     return floats(samples)[:, :len(SUPPLY_STATE.names or ())].tobytes()
 
 

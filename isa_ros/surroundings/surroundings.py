@@ -6,46 +6,26 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from isa_ros.core.bound import Bound, nothing, Part
-from isa_ros.core.changeable import Changeable, changeables, with_changes
+from isa_ros.core.changeable import Changeable, changeables, with_own_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
-from isa_ros.core.parameter import check, fault, Parameters
-from isa_ros.core.saved_state import broken_number, restored_rows
+from isa_ros.core.parameter import check
+from isa_ros.core.saved_state import cut, restored_rows
 from isa_ros.core.signals import SUPPLY_REPLY
 from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError, RunError
+from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.emergency_line import changing_line
 from isa_ros.surroundings.feeding import made, n_samples, summed, SupplyCircuit
 from isa_ros.surroundings.supply import saved_states, Supply, SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import SupplyPorts
 from isa_ros.surroundings.supply_tick import Answers, keep_answers
 import numpy as np
 
-
-_P = TypeVar('_P', bound=Parameters)
-
-EMERGENCY_STOP = 'emergency_stop'
-"""Begins the names of the lines of groups; a supply does not have this name."""
 _NO_ANSWERS = np.zeros(0, SUPPLY_REPLY)
-OPEN = 'opened'
-"""Name of the only value of a line."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class _EmergencyStop(Parameters):
-    """The line of a group of actuators that stop together."""
-
-    opened: float = fault(
-        '1: the line of the emergency stop is open', '1', is_whole=True, ge=0.0, le=1.0)
-
-
-def line_of(group: str) -> str:
-    """Return what the names of a group's values begin with."""
-    return f'{EMERGENCY_STOP}.{group}'
 
 
 class Surroundings:
@@ -81,8 +61,7 @@ class Surroundings:
         self.changing: Mapping[str, Changeable] = {
             name: own for circuit in circuits
             for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
-            name: own for line in lines
-            for name, own in changeables(_EmergencyStop(), f'{line_of(line)}.').items()} | {
+            name: own for line in lines for name, own in changing_line(line).items()} | {
             name: own for body, given in self._changing_bodies()
             for name, own in changeables(given.changing, f'{body}.').items()}
         """All that may change during a run, by SUPPLY.KEY or BODY.KEY, and the lines of groups."""
@@ -186,7 +165,7 @@ class Surroundings:
 
     def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply | Circuit, Any]]:
         for supply, circuit in zip(self._supplies, self.circuits):
-            yield supply, _changed(circuit.sheet, circuit.name, values)
+            yield supply, with_own_changes(circuit.sheet, circuit.name, values)
 
     def _changing_bodies(self) -> Iterator[tuple[str, ChangingBody]]:
         for name, body in self.bodies.items():
@@ -199,7 +178,7 @@ class Surroundings:
         for supply, sheet in self._sheets(values):
             supply.change(sheet)
         for name, body in self._changing_bodies():
-            body.change(_changed(body.changing, name, values))
+            body.change(with_own_changes(body.changing, name, values))
 
     def advance(self, replies: Records, fed: Records | None = None) -> None:
         """
@@ -270,12 +249,8 @@ class Surroundings:
             A number in the state of a body is not finite.
 
         """
-        for k, name in enumerate(self._owners):
-            broken = broken_number(self.supplies[k:k + 1])
-            if broken is not None:
-                raise RunError(f'{name}: {broken[0]} = {broken[1]}, must be finite to be saved')
-        return b''.join([saved_states(self.supplies), self._ports.answers.tobytes(),
-                         self._values.snapshot(),
+        return b''.join([saved_states(self.supplies, self._owners),
+                         self._ports.answers.tobytes(), self._values.snapshot(),
                          *(circuit.snapshot() for circuit in self._circuits),
                          *(body.snapshot() for body in self.bodies.values())])
 
@@ -289,49 +264,34 @@ class Surroundings:
             The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        answers_at = len(self._owners) * SUPPLY_STATE.itemsize
-        supplies_end = answers_at + self._ports.answers.nbytes
-        values_end = supplies_end + self._values.nbytes
-        circuits_end = values_end + sum(own.saved_size for own in self._circuits)
-        sizes, end = [], circuits_end
+        sizes = [len(self._owners) * SUPPLY_STATE.itemsize, self._ports.answers.nbytes,
+                 self._values.nbytes, *(own.saved_size for own in self._circuits)]
+        end = sum(sizes)
         for body in self.bodies.values():
             sizes.append(body.saved_size(snapshot[end:]) if isinstance(body, SizedBody)
                          else len(body.snapshot()))
             end += sizes[-1]
-        if len(snapshot) != end:
-            raise ConfigError(
-                f'saved state of the surroundings has {len(snapshot)} bytes, must have {end}')
+        of_supplies, of_ports, of_values, *others = cut(snapshot, sizes, 'the surroundings')
+        of_circuits, of_bodies = others[:len(self._circuits)], others[len(self._circuits):]
         supplies = np.concatenate([
-            restored_rows(snapshot, SUPPLY_STATE, 1, k * SUPPLY_STATE.itemsize, name)
+            restored_rows(of_supplies, SUPPLY_STATE, 1, k * SUPPLY_STATE.itemsize, name)
             for k, name in enumerate(self._owners)])
         answers = restored_rows(
-            snapshot, SUPPLY_REPLY, len(self._ports.answers), answers_at, 'supply ports')
-        of_circuits, at = [], values_end
-        for own in self._circuits:
-            of_circuits.append(snapshot[at:at + own.saved_size])
-            own.refuse_snapshot(of_circuits[-1])
-            at += own.saved_size
-        self._values.restore(snapshot[supplies_end:values_end])
+            of_ports, SUPPLY_REPLY, len(self._ports.answers), 0, 'supply ports')
+        for own, state in zip(self._circuits, of_circuits):
+            own.refuse_snapshot(state)
+        self._values.restore(of_values)
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()
         self.supplies[list(SUPPLY_STATE.names or ())] = supplies
         self._ports.answers[:] = answers
         for own, state in zip(self._circuits, of_circuits):
             own.restore(state)
-        at = circuits_end
-        for body, size in zip(self.bodies.values(), sizes):
-            body.restore(snapshot[at:at + size])
-            at += size
+        for body, state in zip(self.bodies.values(), of_bodies):
+            body.restore(state)
 
     def restart(self, beginning: bytes) -> None:
         """Return to the `snapshot` of t = 0; tuned values stay, in force from the first tick."""
         _, beneath = self._values.with_accepted({})
         self.restore(beginning)
         self._values.accept(beneath)
-
-
-def _changed(sheet: _P, owner: str, values: Mapping[str, float]) -> _P:
-    """Return the sheet of a supply or body with those of the values that are its own."""
-    prefix = f'{owner}.'
-    own = {name: value for name, value in values.items() if name.startswith(prefix)}
-    return with_changes(sheet, changeables(sheet, prefix), own)

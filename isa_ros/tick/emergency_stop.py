@@ -21,8 +21,9 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.reu.protection_sheet import changed_reactions, reaction_of
+from isa_ros.surroundings.emergency_line import line_of, OPEN
 from isa_ros.surroundings.supply import is_dumped
-from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
+from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 
 LINE = 'reu.device.emergency_stop'

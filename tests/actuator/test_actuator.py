@@ -1,6 +1,7 @@
 """One smart actuator: acceptance on its rigs, setpoints, snapshots, divergence."""
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, LOAD_PORT
 from isa_ros.errors import SetpointError, SimulationDiverged
 import numpy as np

@@ -9,9 +9,10 @@ from dataclasses import replace
 from functools import cache
 import math
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.feed import conductance
 from isa_ros.actuator.rows import Memory
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, SUPPLY_PORT, SUPPLY_REPLY
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.surroundings.supply import Supply

@@ -4,8 +4,9 @@ import os
 import subprocess
 import sys
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.rows import Memory
+from isa_ros.actuator.timing import Timing
 import numba
 import numpy as np
 import pytest

@@ -6,12 +6,13 @@ from typing import Any
 
 from hypothesis import given, strategies as st
 from isa_ros.actuator import link as links
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.frames import DOWN, leaves, LINE, put_frame, SLOTS, take_frame
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.link import link_key, link_record, LINK_STATE, LinkSheet
 from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.record import rows_of

@@ -6,7 +6,7 @@ without a force, if every stage is evaluated at its own time. What is left are t
 100 steps of numbers below 0.06 m and 0.1 m/s: below 1e-15 of the unit each.
 """
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import LOAD_PORT
 import numpy as np
 import pytest

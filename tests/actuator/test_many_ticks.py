@@ -5,9 +5,9 @@ import os
 import subprocess
 import sys
 
-from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.states import STATES
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT, LOAD_PORT
 from isa_ros.errors import SimulationDiverged

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE, SPOOL
 from isa_ros.core.signals import (

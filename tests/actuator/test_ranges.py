@@ -8,8 +8,9 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, static_force
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.plant.step_limits import refuse_too_fast
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override, own_load, setpoint, smart_actuator
 

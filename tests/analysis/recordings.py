@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.timing import Timing
 from isa_ros.analysis.signals.recording import Recording
 from isa_ros.core.signals import SAMPLE
 import numpy as np

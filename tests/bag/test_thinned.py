@@ -8,7 +8,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
 from isa_ros.config.runs.recording import RecordConfig
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.replay.compare import compare_bags
 from isa_ros.replay.replay import replay, Rerun
 import pytest
@@ -23,7 +23,7 @@ N = 151  # samples
 def recorded_as(bag: Bag, record: RecordConfig, directory) -> Bag:
     """Simulate a bag's run again and record it with these patterns."""
     def section(text: str) -> str:
-        return replace(RunConfig.from_yaml(text), record=record).to_yaml()
+        return replace(run_of_text(text), record=record).to_yaml()
 
     configured = Bag(rewrite(
         bag, directory.with_name(f'{directory.name}_configured'), configuration=section))

@@ -21,7 +21,7 @@ def test_the_paths_are_two_lines_and_a_table_follows(tmp_path, monkeypatch, caps
         isa_ros.load('rig_rotary', 'step', duration=0.01).simulate().save(request.out)
         print(request.out)
         return Namespace(out=request.out)
-    monkeypatch.setattr(commands, '_record', record)
+    monkeypatch.setattr(commands, 'record', record)
     assert commands.demo(Namespace(out=out, is_alone=False))
     bag, page, _, header, rotor, *rest = capsys.readouterr().out.splitlines()
     assert bag == str(out / 'bag')

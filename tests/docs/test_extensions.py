@@ -13,7 +13,7 @@ _KEY = f"""    number('room_celsius', 'Celsius', 'the air around the run', 20.0,
 _RUNS = """
 import isa_ros
 from isa_ros.config.differences import configuration_differences, key_differences
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
@@ -21,7 +21,7 @@ rig = isa_ros.load('rig_linear')
 assert rig.configuration.room_celsius == 20.0
 warm = rig.replace({'room_celsius': 30}).configuration
 text = warm.to_yaml()
-assert RunConfig.from_yaml(text) == warm and warm.digest != rig.configuration.digest
+assert run_of_text(text) == warm and warm.digest != rig.configuration.digest
 print(*configuration_differences(parse(text, ''), parse(rig.configuration.to_yaml(), '')))
 older = parse(text.replace('room_celsius: 30.0\\n', ''), '')
 print(*key_differences(older, Place('old')))

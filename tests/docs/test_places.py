@@ -132,7 +132,7 @@ import isa_ros
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import configuration_differences
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import dump, parse
 from isa_ros.replay.replay import replay
 tree = {
@@ -145,7 +145,7 @@ run = isa_ros.load(tree, {'name': 'push', 'duration_s': 0.03, 'tracks': {
     'push': [{'t_s': 0.0, 'position': 0.04, 'effort': 500.0}]}})
 Path('slide.yaml').write_text(dump(tree))
 text = run.configuration.to_yaml()
-assert RunConfig.from_yaml(text) == run.configuration
+assert run_of_text(text) == run.configuration
 result = run.simulate()
 bag = result.save('rail')
 assert result['body.place'][-1] > 0.0401 and result.units['body.speed'] == 'm/s'
@@ -204,10 +204,10 @@ SupplySheet = ConstantSupply | AccumulatorSupply | CircuitSupply | FallingSupply
 '''
 _FALLS = """
 import isa_ros
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 run = isa_ros.load('rig_linear').replace({'supply': {
     'kind': 'falling', 'pressure_mpa': 20.0, 'return_pressure_mpa': 0.0, 'lasts_s': 2.0}})
-assert RunConfig.from_yaml(run.configuration.to_yaml()) == run.configuration
+assert run_of_text(run.configuration.to_yaml()) == run.configuration
 result = run.simulate(0.1)
 print(f"{result['supply.pressure'][0] * 1e-6:.3f} {result['supply.pressure'][-1] * 1e-6:.3f}")
 """

@@ -17,6 +17,7 @@ from isa_ros.bag.reader import Bag, BagMessage
 from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.topic import Topic
 from isa_ros.errors import IsaError
 from isa_ros.replay.compare import Comparer
@@ -176,7 +177,7 @@ class OneMessage(Bag):
 def fuzz_messages(cases: int, seed: int) -> int:
     """Take altered messages as inputs of a replay, and compare them with the true ones."""
     golden = Bag(GOLDEN / 'rotor_step')
-    run, topics = RunConfig.from_yaml(golden.provenance.configuration), sorted(golden.types)
+    run, topics = run_of_text(golden.provenance.configuration), sorted(golden.types)
     originals = [m for m in golden.messages() if m.sequence < N_TICKS]
     originals.append(BagMessage(0, 0, event.TOPIC[0], event.pack(0, 'pause')))
     n_refused = 0

@@ -9,7 +9,7 @@ import warnings
 
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.model_run import full_key, model_run
-from isa_ros.config.runs.run_config import run_of
+from isa_ros.config.runs.run_reading import run_of
 from isa_ros.config.text.changes import changed
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree

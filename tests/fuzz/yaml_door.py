@@ -11,7 +11,8 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models import catalogue
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.runs.run_config import RUN, run_of, RunConfig
+from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.run_reading import run_of, run_of_tree
 from isa_ros.config.text.keys import differences
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place
@@ -80,7 +81,7 @@ def assert_well_defined(run: RunConfig) -> None:
     """Its text reads back as the same run, and every number of it is finite."""
     tree = RUN.tree(run)
     assert all(math.isfinite(value) for value in values(tree)), tree
-    assert RunConfig.from_tree(tree, 'resolved.yaml') == run
+    assert run_of_tree(tree, 'resolved.yaml') == run
 
 
 def _path(name: str, directory: str) -> Path:
@@ -132,7 +133,7 @@ def _resolved(run: RunConfig, dice: random.Random) -> None:
     tree = altered(RUN.tree(run), dice)
     for difference in differences(RUN, tree, Place('resolved.yaml')):
         assert difference.text
-    assert_well_defined(RunConfig.from_tree(tree, 'resolved.yaml'))
+    assert_well_defined(run_of_tree(tree, 'resolved.yaml'))
 
 
 def _model(tree: Any) -> None:

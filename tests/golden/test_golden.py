@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 import pytest
 
 pytest_plugins = ['isa_ros.testing']
@@ -50,7 +50,7 @@ def test_golden_bag_holds_what_it_is_there_for(bag):
     """A sample at t = 0 and one per tick; the size is small enough for the repository."""
     config, n_ticks, topic = CONTENTS[bag.name]
     read = Bag(bag)
-    run = RunConfig.from_yaml(read.provenance.configuration)
+    run = run_of_text(read.provenance.configuration)
     assert run.source == config
     assert (read.start_ns, read.end_ns, read.is_whole) == (0, n_ticks * run.step_ns, True)
     assert sum(message.topic == topic for message in read.messages()) == n_ticks + 1

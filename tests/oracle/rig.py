@@ -3,8 +3,9 @@
 from dataclasses import dataclass, field
 import math
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.bodies.leg.leg import Leg, Pose

@@ -13,8 +13,9 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import cushion
 from isa_ros.plant.chambers import volumes
 from isa_ros.plant.cushion_sheets import SpearCushion, trapped_area
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.plant import plant_record, PLANT_STATE
-from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.plant.step_limits import refuse_too_fast
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, override

@@ -5,12 +5,13 @@ import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.plant.counterbalance import counterbalance_excess, counterbalance_record
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.load_holding import least_lag, lift_rate, poppet_square
 from isa_ros.plant.pilot_check import pilot_check_excess, pilot_check_record
 from isa_ros.plant.plant import plant_record, PLANT_STATE
 from isa_ros.plant.rest_oil import null_pressures, rest_oil
 from isa_ros.plant.service_lines import sensed_pressures
-from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.plant.step_limits import refuse_too_fast
 import numpy as np
 import pytest
 from tests.actuator.hosed_cylinder import CHECK, COUNTERBALANCE, HOSES

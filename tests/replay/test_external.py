@@ -8,6 +8,7 @@ from pathlib import Path
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.replay.replay import recorded_inputs, replay
 from isa_ros.run.options import Request
@@ -208,6 +209,6 @@ def test_a_module_of_the_current_folder_is_found(
 
 def test_the_class_is_part_of_the_configuration(files: Path) -> None:
     run = isa_ros.load(files / 'spring.yaml').configuration
-    assert type(run).from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
     body, = run.bodies
     assert replace(body, maker=None) != body and body.maker.endswith(':Turned')

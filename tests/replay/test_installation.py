@@ -10,8 +10,8 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.replay.installation import _changed_versions, differences
 from isa_ros.replay.replay import Rerun
 from isa_ros.run.provenance import recorded_versions
@@ -30,7 +30,7 @@ def here(tmp_path_factory) -> Bag:
     directory = tmp_path_factory.mktemp('here') / 'rig'
     golden = Bag(GOLDEN / 'rotor_step')
     again = Rerun(golden)
-    configuration = RunConfig.from_yaml(golden.provenance.configuration).to_yaml()
+    configuration = run_of_text(golden.provenance.configuration).to_yaml()
     own = provenance.Provenance(
         configuration, golden.provenance.scenario, 0, installed_versions())
     with BagWriter(directory, again.topics, own) as writer:

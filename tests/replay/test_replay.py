@@ -6,7 +6,7 @@ import shutil
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.errors import BagError
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
 from msg_adapters import event
@@ -43,7 +43,7 @@ def one_percent_more(topic: str, sequence: int, data: bytes) -> bytes:
 def test_recorded_commands_take_effect_at_their_ticks():
     """The applied setpoints of sample k + 1 are the commands of tick k."""
     bag = Bag(GOLDEN)
-    run = RunConfig.from_yaml(bag.provenance.configuration)
+    run = run_of_text(bag.provenance.configuration)
     commands, tuned, supplies, ports, n_ticks, has_end = recorded_inputs(bag, run)
     assert (tuned, supplies, ports, n_ticks, has_end) == ({}, {}, {}, 80, True)
     assert sorted(commands) == [0, EFFORT_TICK]

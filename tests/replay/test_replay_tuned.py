@@ -6,7 +6,7 @@ from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.topic import Topic
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
 from isa_ros.run.local_run import LocalRun
@@ -29,7 +29,7 @@ N_TICKS = 60
 def tuned(tmp_path_factory) -> Path:
     """Return a bag of the leg with gains of two actuators changed during the run."""
     provenance = Bag(GOLDEN).provenance
-    local = LocalRun(RunConfig.from_yaml(provenance.configuration))
+    local = LocalRun(run_of_text(provenance.configuration))
     directory = tmp_path_factory.mktemp('bags') / 'tuned'
     with BagWriter(directory, local.topics, provenance) as writer:
         local.simulate(N_TICKS, ScheduledSource(lambda tick, rows: None, CHANGES), writer)
@@ -52,7 +52,7 @@ def with_kp(bag: Path, directory: Path, value: float) -> Path:
 
 def test_what_was_tuned_is_an_input_at_its_tick(tuned):
     bag = Bag(tuned)
-    inputs = recorded_inputs(bag, RunConfig.from_yaml(bag.provenance.configuration))
+    inputs = recorded_inputs(bag, run_of_text(bag.provenance.configuration))
     assert (inputs.tuned, inputs.n_ticks) == (TUNED, N_TICKS)
     assert bag.types[TOPIC] == TYPE
 

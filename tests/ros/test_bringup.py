@@ -5,7 +5,7 @@ import re
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.nodes.bringup import bringup as bring_up
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
@@ -122,5 +122,5 @@ def test_other_values_reach_every_process(domain, tmp_path):
                      *options, config=RIG) as run:
             assert run.exit_code() == 0, run.errors
     assert sha256(bags[0]) == sha256(bags[1])
-    rotor, = RunConfig.from_yaml(Bag(bags[0]).provenance.configuration).actuators
+    rotor, = run_of_text(Bag(bags[0]).provenance.configuration).actuators
     assert (rotor.sheet.reu.force.kp, rotor.load.stiffness) == (2e-5, 2e4)

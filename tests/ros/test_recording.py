@@ -7,7 +7,7 @@ import signal
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 import pytest
 from rosbags.rosbag2 import Reader
 from tests.ros.started import bringup, coordinator, LEG, RIG, wait_for
@@ -41,7 +41,7 @@ def test_parameters_of_the_coordinator_win_and_are_recorded(domain, tmp_path):
     with coordinator(tmp_path / 'log', config_file=config, out=bag, duration=0.1,
                      in_process=True, compression='lz4', split_mb=0.0) as run:
         assert run.exit_code() == 0, run.errors
-    record = RunConfig.from_yaml(Bag(bag).provenance.configuration).record
+    record = run_of_text(Bag(bag).provenance.configuration).record
     assert record.storage == Storage(compression='lz4', split_mb=0.0)
     assert record.leave_out == ('/*/references',)
     assert '/rotor/references' not in Bag(bag).types

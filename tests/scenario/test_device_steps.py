@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, FORCE, IMPEDANCE, QUICK_STOP
 from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.errors import ConfigError
@@ -114,7 +115,7 @@ def test_a_step_that_cannot_be_is_refused(step, message):
 def test_the_run_file_says_how_it_starts(changes, state, mode):
     """As keys of the actuator; the resolved text keeps them."""
     run = replace(RUN, actuators=tuple(replace(own, **changes) for own in RUN.actuators))
-    assert type(run).from_yaml(run.to_yaml()).actuators == run.actuators
+    assert run_of_text(run.to_yaml()).actuators == run.actuators
     sample = Simulation(idle(run)).step()[NAME]
     assert (sample.device_state, sample.device_mode) == (state, mode)
 

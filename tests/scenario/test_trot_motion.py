@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.sections import Place

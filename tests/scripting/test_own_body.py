@@ -5,7 +5,7 @@ from pathlib import Path
 import re
 
 import isa_ros
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.local_run import LocalRun
@@ -232,7 +232,7 @@ def test_its_text_is_read_back() -> None:
     run = rig(actuators={
         'push': {'model': 'isa_v5', 'initial_position_mm': 40.0}, 'pull': {'model': 'isa_v5'}})
     config = run.configuration
-    assert RunConfig.from_yaml(config.to_yaml()) == config
+    assert run_of_text(config.to_yaml()) == config
     assert [own.initial_position for own in config.actuators][0] == pytest.approx(0.04)
     assert config.body('body').joints == (('pull', 'pull'), ('push', 'push'))
 

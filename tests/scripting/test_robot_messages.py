@@ -10,6 +10,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, find_drawing
 from isa_ros.config.robots.geometry import poses
 from isa_ros.config.robots.urdf import Pose
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import read
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import SetpointError
@@ -135,7 +136,7 @@ def test_a_robot_in_a_namespace_has_its_topics_frames_and_actuators_there():
         assert [name for _, name in robot.joints] == [drive.actuator for drive in robot.drives]
         assert {joint.actuator for joint in robot.joint_space.values()} == {
             name for _, name in robot.joints} <= {actuator.name for actuator in run.actuators}
-    assert type(run).from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
 
 
 @pytest.mark.parametrize('config', ['quadruped', 'crane', 'two_joint_leg'])

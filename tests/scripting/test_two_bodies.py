@@ -9,7 +9,7 @@ from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.config.listing import describe
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import dump, read
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
@@ -100,7 +100,7 @@ def test_a_controller_sees_them_by_name() -> None:
 
 def test_their_text_and_list_have_both(tmp_path: Path) -> None:
     run = started().configuration
-    assert RunConfig.from_yaml(run.to_yaml()) == run and run.leg is None
+    assert run_of_text(run.to_yaml()) == run and run.leg is None
     path = tmp_path / 'two.yaml'
     path.write_text(dump(two_legs()), encoding='utf-8')
     listed = describe(str(path), values={'bodies.left.start.kfe_deg': -100.0}).splitlines()

@@ -7,7 +7,7 @@ import re
 
 import isa_ros
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import DISABLED, ENABLED, FAULT, QUICK_STOP
@@ -528,7 +528,7 @@ def test_a_reset_keeps_the_line_as_it_keeps_all_tuned_values():
 
 def test_the_configuration_comes_back_from_its_text():
     own = run().configuration
-    assert RunConfig.from_yaml(own.to_yaml()) == own
+    assert run_of_text(own.to_yaml()) == own
     plain = replace(own, emergency_stops=())
     assert 'emergency_stops' not in plain.to_yaml()
     assert [group.actuators for group in plain.stop_groups] == [('left', 'right', 'other')]

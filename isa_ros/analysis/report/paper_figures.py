@@ -40,7 +40,7 @@ LAYOUTS: Mapping[str, FigureLayout] = {
     'knee_sine': FigureLayout('Sine of the knee, as Fig 19', (POSITION,)),
     'leg_drop': FigureLayout('Drop of the leg, as Fig 20', (FORCE,)),
 }
-"""By the names of `isa_ros.scenario.scenario.FIGURES`, which also has those of `RESPONSES`."""
+"""By the names of `isa_ros.scenario.figures.FIGURES`, which also has those of `RESPONSES`."""
 
 
 def paper_figure(name: str, signals: Signals) -> Figure:

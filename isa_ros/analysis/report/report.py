@@ -25,7 +25,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.run.events import Event, events_in
 from isa_ros.run.recorded import history_of
-from isa_ros.scenario.scenario import figure_of as figure_of_scenario
+from isa_ros.scenario.figures import figure_of as figure_of_scenario
 from isa_ros.text.markup import details, download, pairs, picture, table, tag
 from matplotlib.figure import Figure
 

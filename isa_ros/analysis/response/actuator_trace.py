@@ -6,9 +6,9 @@ A tick is as short as the period of the converters, so that there is a row for e
 
 from collections.abc import Mapping
 
-from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.states import STATES
+from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 import numpy as np

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.models.catalogue import material_section
-from isa_ros.config.robots.drives import frame_named, in_link
+from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import Tree
 from isa_ros.config.text.key_tables import KeyTable, Named

@@ -1,30 +1,28 @@
 """The drives of a robot in a run file: which actuator moves which joint, by which linkage."""
 
 from collections.abc import Container, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import math
 from typing import Any
 
-from isa_ros.config.models.catalogue import leg_names, leg_section
+from isa_ros.config.robots.frames import frame_named, in_link
+from isa_ros.config.robots.like_linkages import linkage_section
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import Tree
 from isa_ros.config.text.key_tables import KeyTable, Named
-from isa_ros.config.text.keys import (
-    FLAG, InText, Key, ParameterSet, PLACED_NAME, TEXT, Value)
+from isa_ros.config.text.keys import FLAG, InText, Key, ParameterSet, PLACED_NAME, TEXT, Value
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.parameter_sets import build_one_of, members
 from isa_ros.config.text.sections import (
-    KIND_KEYS, merge, Place, refuse_unknown, Section, section_at, SourcedValue, written)
+    KIND_KEYS, Place, Section, section_at, SourcedValue, written)
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.parameter import check, numbers, parameter, Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import (
-    JointLinkage, Points, RobotDrive, RobotFrame, RobotLink, vector)
-from isa_ros.surroundings.linkage_sheet import (
-    Joint, linkage_record, OneJointLinkage)
-import numpy as np
+    JointLinkage, Points, RobotDrive, RobotLink, vector)
+from isa_ros.surroundings.linkage_sheet import Joint, linkage_record, OneJointLinkage
 
 _OF_CYLINDER = ('base', 'rod', 'range', 'base_mm', 'rod_mm')
 """Keys that no other linkage has."""
@@ -121,7 +119,9 @@ def drives_of(
     order = {name: k for k, name in enumerate(joints)}
     for name in sorted(sections, key=lambda name: order.get(name, len(order))):
         own, below = sections[name], place / name
-        section = _linkage_section(own, linkages, below)
+        values = written(
+            {key: value for key, value in own.items() if key not in DRIVE.names}, below)
+        section = linkage_section(own, values, linkages, below)
         kind = next((entry.value for key in KIND_KEYS
                      if isinstance(entry := section.get(key), SourcedValue)), None)
         if kind is None:
@@ -145,52 +145,6 @@ def drives_of(
         drives.append(drive)
         origins[name] = section
     return tuple(drives), origins
-
-
-def _linkage_section(
-        own: YamlTree, linkages: Mapping[str, Section], place: Place) -> Section:
-    """Return the values of a drive's linkage, over those of the one that it is like."""
-    values = written({key: value for key, value in own.items() if key not in DRIVE.names}, place)
-    if 'like' not in own:
-        if 'mirrored' in own:
-            raise ConfigError(f'{place / "mirrored"} is not used: the drive is like no other')
-        return values
-    base = dict(_like(own['like'], linkages, place / 'like'))
-    mirrored = own.get('mirrored', False)
-    if not isinstance(mirrored, bool):
-        raise ConfigError(f'{place / "mirrored"} = {mirrored!r}, must be true or false')
-    return merge(_mirrored(base, place) if mirrored else base, values)
-
-
-def _mirrored(base: Section, place: Place) -> Section:
-    """Return a linkage of a joint whose angle is the negative one."""
-    def negative(key: str) -> SourcedValue | None:
-        entry = base.pop(key, None)
-        if not isinstance(entry, SourcedValue) or not isinstance(entry.value, (int, float)):
-            return None
-        return replace(entry, value=-entry.value)
-    sense, low, high = (negative(key) for key in ('sense', 'low_deg', 'high_deg'))
-    if sense is None:
-        raise ConfigError(
-            f'{place / "mirrored"} is not used: the linkage has no sense that it changes')
-    ends = {'sense': sense, 'low_deg': high, 'high_deg': low}
-    return base | {key: entry for key, entry in ends.items() if entry is not None}
-
-
-def _like(name: Any, linkages: Mapping[str, Section], place: Place) -> Section:
-    """Return a linkage of the file, or LEG.JOINT of a packaged leg without its range."""
-    if isinstance(name, str) and name in linkages:
-        return linkages[name]
-    leg, _, joint = str(name).partition('.')
-    if leg in leg_names():
-        section, _ = leg_section(leg, str(place))
-        refuse_unknown([joint], ('haa', 'hfe', 'kfe'), Place(place.file, f'{place.key}.{leg}'))
-        found = section[joint]
-        assert isinstance(found, dict)
-        return {key: value for key, value in found.items() if key not in ('low_deg', 'high_deg')}
-    raise ConfigError(
-        f'{place} = {name!r} is not a linkage of the file, nor LEG.JOINT of a packaged leg; '
-        f'{alternatives(str(name), [*linkages, *(f"{own}.kfe" for own in leg_names())])}')
 
 
 def _joint_of(
@@ -292,14 +246,3 @@ def robot_drive(own: DriveConfig, tree: Tree) -> RobotDrive:
     return RobotDrive(actuator=own.name, linkage=Points(
         link_a=a, point_a=vector(point_a), link_b=b, point_b=vector(point_b),
         retracted_length=MILLI * own.linkage.retracted_length_mm))
-
-
-def frame_named(tree: Tree, name: str | None) -> RobotFrame:
-    """Return the frame of a link of the URDF, which there is."""
-    return next(frame for frame in tree.frames if frame.name == name)
-
-
-def in_link(frame: RobotFrame, place: list[float]) -> tuple[int, list[float]]:
-    """Return the link of the tree that a frame is fixed to, and a point (m) in its axes."""
-    found = np.array(frame.place) + np.array(frame.rotation) @ np.array(place)
-    return frame.link, found.tolist()

@@ -25,8 +25,9 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.plant.step_limits import refuse_too_fast
 from isa_ros.reu.wiring import mode_of
 
 _ROUNDING = 1e-12   # m or rad, of a position given in mm or deg

@@ -73,7 +73,7 @@ class BodyConfig:
 
         They have the keys of the sheets in the resolved text of the body.
 
-        ``is_checked`` as in `isa_ros.config.runs.run_config.run_of`.
+        ``is_checked`` as in `isa_ros.config.runs.run_reading.run_of`.
 
         Raises
         ------

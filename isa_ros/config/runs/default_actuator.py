@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.timing import Timing
 from isa_ros.config.models.catalogue import Model
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.actuator_config import ActuatorConfig
 from isa_ros.config.runs.model_run import model_run
-from isa_ros.config.runs.run_config import run_of
+from isa_ros.config.runs.run_reading import run_of
 from isa_ros.config.text.sections import Place
 from isa_ros.loads.sheets import LocalLoad
 

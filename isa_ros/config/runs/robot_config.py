@@ -12,8 +12,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.paths import drawings, find_drawing
 from isa_ros.config.robots.contacts import (
     CONTACT, ContactConfig, Contacts, contacts_of, GROUND, robot_contact)
-from isa_ros.config.robots.drives import (
-    DRIVE, DriveConfig, Drives, drives_of, frame_named, in_link, robot_drive)
+from isa_ros.config.robots.drives import DRIVE, DriveConfig, Drives, drives_of, robot_drive
 from isa_ros.config.robots.geometry import motion_of
 from isa_ros.config.robots.impact import contact_masses
 from isa_ros.config.robots.patterns import names_in
@@ -22,17 +21,17 @@ from isa_ros.config.robots.start import (
     coordinates, refuse_start, robot_start, RobotStartConfig, root_pose, START, start_of)
 from isa_ros.config.robots.tree import Tree, tree_of
 from isa_ros.config.robots.tree_text import TREE, tree_from
+from isa_ros.config.robots.units import refuse_units, robot_unit, UNIT, UnitConfig
 from isa_ros.config.robots.urdf import load_urdf
 from isa_ros.config.runs.body_config import BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.key_tables import KeyTable, Named
-from isa_ros.config.text.keys import choice_of, InText, Key, Layer, ParameterSet, TEXT, Value
+from isa_ros.config.text.keys import choice_of, InText, Key, Layer, TEXT, Value
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field
 from isa_ros.core.noise import noise_key
-from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -42,26 +41,11 @@ from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, matrix, Push, RobotDrive, RobotSheet, RobotUnit, vector)
 from isa_ros.surroundings.impact import contact_time
-from isa_ros.surroundings.inertial_unit import InertialUnitSheet
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
 from isa_ros.surroundings.messages import BodyMessage
 
 FREE, FIXED = 'free', 'fixed'
-
-
-@dataclass(frozen=True)
-class UnitConfig:
-    """An inertial measurement unit of a robot, in the axes of a link of the URDF."""
-
-    name: str
-    link: str
-    sheet: InertialUnitSheet
-
-
-_UNIT = KeyTable((
-    Key('link', TEXT, 'link of the URDF; its axes are those of the unit'),),
-    rest=Key('sheet', ParameterSet(InertialUnitSheet), 'the unit'))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +71,7 @@ class RobotConfig(BodyConfig):
         Key('ground', GROUND, 'material under the contacts', None, in_text=InText.NEVER),
         Key('contacts', Contacts(CONTACT), 'points that touch the ground', {}),
         Key('start', START, 'pose at t = 0', {}),
-        Key('imus', Named(_UNIT), 'inertial measurement units', {}),
+        Key('imus', Named(UNIT), 'inertial measurement units', {}),
         Key('tree', TREE, 'links and frames inline: of the URDF only the name is used', None,
             in_text=InText.ONLY)))
 
@@ -123,7 +107,7 @@ class RobotConfig(BodyConfig):
             contacts=contacts, start=start_of(values['start'], tree, None, place / 'start'),
             imus=tuple(UnitConfig(own, unit['link'], unit['sheet'])
                        for own, unit in values['imus'].items()))
-        robot._refuse_units(step_ns, place / 'imus')
+        refuse_units(robot.imus, tree, step_ns, place / 'imus')
         if is_checked:
             robot._refuse_joints(place)
             robot._refuse_start(step_ns, place / 'start')
@@ -196,14 +180,6 @@ class RobotConfig(BodyConfig):
                     f'{place}: no actuator moves the joint {joint}: give it a drive, or name it '
                     'in passive')
 
-    def _refuse_units(self, step_ns: int, place: Place) -> None:
-        links = [frame.name for frame in self.tree.frames]
-        for own in self.imus:
-            if own.link not in links:
-                raise ConfigError(f'{place / own.name / "link"} = {own.link!r} is not a link of '
-                                  f'the URDF; {alternatives(own.link, links)}')
-            own.sheet.period_ns(step_ns, str(place / own.name))
-
     def _refuse_start(self, step_ns: int, place: Place) -> None:
         refuse_start(self.start, self.tree, self.sheet.contacts, place)
         ticks_in(self.start.root.release_s, step_ns, f'{place}.release_s')
@@ -241,17 +217,10 @@ class RobotConfig(BodyConfig):
 
     def units(self, step_ns: int, seed: int) -> list[RobotUnit]:
         """Return its inertial units."""
-        found = []
-        for own in self.imus:
-            frame, sheet = frame_named(self.tree, own.link), own.sheet
-            link, at = in_link(frame, [MILLI * one for one in (
-                sheet.x_mm, sheet.y_mm, sheet.z_mm)])
-            found.append(RobotUnit(
-                own.name, link, vector(at), frame.rotation, sheet.accelerometer_sigma,
-                sheet.accelerometer_bias, sheet.gyro_sigma, sheet.gyro_bias,
-                sheet.period_ns(step_ns, own.name),
-                noise_key(seed, f'{self.prefix}{own.name}/imu')))
-        return found
+        return [
+            robot_unit(
+                own, self.tree, step_ns, noise_key(seed, f'{self.prefix}{own.name}/imu'))
+            for own in self.imus]
 
     @cached_property
     def joint_space(self) -> JointSpace:

@@ -25,8 +25,8 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.body_config import BODY
 from isa_ros.config.runs.controller_config import CONTROLLERS
 from isa_ros.config.runs.emergency_stops import EmergencyStopConfig, KEY as EMERGENCY_STOPS
-from isa_ros.config.runs.run_config import (
-    Origins, refuse_nested, ROBOTS, RUN, run_of, RunConfig)
+from isa_ros.config.runs.run_config import refuse_nested, ROBOTS, RUN, RunConfig
+from isa_ros.config.runs.run_reading import Origins, run_of
 from isa_ros.config.runs.supplies import SUPPLY
 from isa_ros.config.text.names import placed, refuse_bad_name
 from isa_ros.config.text.sections import (

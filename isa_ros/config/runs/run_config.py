@@ -1,42 +1,37 @@
 """The configuration of one run: its keys, every parameter filled in, immutable, loss-free text."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
 from typing import Any
 
 from isa_ros.actuator.link import LinkSheet, NO_LINK
-from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.models.links import LINK
-from isa_ros.config.models.wires import refuse_overfull
 from isa_ros.config.runs.acceptance import ACCEPT, ACCEPT_ALL
-from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
+from isa_ros.config.runs.actuator_config import ACTUATOR, ActuatorConfig
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
 from isa_ros.config.runs.controller_config import (
     ControllerConfig, CONTROLLERS, Controllers, Named as NamedControllers)
 from isa_ros.config.runs.emergency_stops import (
-    ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS,
-    refuse_without_dump)
-from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
+    ALL as EVERY, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.one_robot import one_robot
 from isa_ros.config.runs.recording import RECORD, RecordConfig
-from isa_ros.config.runs.supplies import Sampled, supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
-from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
+from isa_ros.config.runs.supplies import Sampled, SUPPLY, SUPPLY_KEYS, SupplyConfig
+from isa_ros.config.runs.tick_grid import OFFSET, OFFSET_NS, START_TIME, STEP, STEP_NS
 from isa_ros.config.text.key_tables import KeyTable, Named, OneOf
 from isa_ros.config.text.keys import (
-    InText, Key, Layer, NAME, nanoseconds, number, ParameterSet, TEXT, Value)
+    InText, Key, Layer, NAME, number, ParameterSet, TEXT, Value)
 from isa_ros.config.text.names import COORDINATOR, parted, refuse_bad_name
-from isa_ros.config.text.sections import Place, Section
-from isa_ros.config.text.yaml_text import dump, parse, Tree
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import dump
 from isa_ros.core.noise import seed_of
-from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet
 
-__all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfig', 'run_of']
+__all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfig']
 
 ALL = 'all'
 """Stands for every actuator of a run."""
@@ -92,6 +87,11 @@ class RunConfig:
     def body(self, name: str) -> BodyConfig | None:
         """Return the body of a name; None: the run has none."""
         return next((own for own in self.bodies if own.name == name), None)
+
+    @property
+    def only_body(self) -> BodyConfig | None:
+        """Return the body of a run file with ``body``; None: several, or another name."""
+        return self.body(BODY) if len(self.bodies) == 1 else None
 
     def body_of(self, actuator: str) -> BodyConfig | None:
         """Return the body that an actuator moves; None: it has a load of its own."""
@@ -217,31 +217,8 @@ class RunConfig:
         return replace(self, record=self.record.stored(compression, split_mb, where))
 
     def to_yaml(self) -> str:
-        """Return the resolved configuration as text; `from_yaml` undoes it bit for bit."""
+        """Return the resolved configuration as text; `run_of_text` undoes it bit for bit."""
         return dump(RUN.tree(self))
-
-    @classmethod
-    def from_yaml(cls, text: str, name: str = 'configuration.yaml') -> 'RunConfig':
-        """
-        Return the configuration of a resolved text; error messages begin with ``name``.
-
-        Raises
-        ------
-        ConfigError
-            The text is not an output of `to_yaml`.
-
-        """
-        return cls.from_tree(parse(text, name), name)
-
-    @classmethod
-    def from_tree(cls, tree: Tree, name: str) -> 'RunConfig':
-        """Return the configuration of the tree of a resolved text; as `from_yaml`."""
-        return run_of(tree, Place(name), is_checked=False)[0]
-
-
-def _only(run: RunConfig) -> BodyConfig | None:
-    """Return the body of a run file with ``body``."""
-    return run.body(BODY) if len(run.bodies) == 1 else None
 
 
 def refuse_nested(value: Any, place: Place) -> Any:
@@ -250,21 +227,11 @@ def refuse_nested(value: Any, place: Place) -> Any:
 
 
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
-
-_STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
-_OFFSET = number(
-    'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
-    in_text=InText.NEVER, ge=0.0, le=100.0)
-_STEP_NS = nanoseconds('step_ns', 'the macro step', _STEP, gt=0, le=100_000_000)
-_OFFSET_NS = nanoseconds(
-    'controller_offset_ns', 'the offset', _OFFSET, ge=0, le=100_000_000)
-
 RUN = KeyTable((
     Key('name', NAME, 'the name of the run', in_text=InText.ALWAYS),
     Key('source', TEXT, 'the file that the run was resolved from', None,
         'the name of the file', in_text=InText.ONLY),
-    _STEP, _OFFSET,
-    _STEP_NS, _OFFSET_NS,
+    STEP, OFFSET, STEP_NS, OFFSET_NS,
     number('tick_timeout_s', 's', 'host time after which a participant counts as lost', 5.0,
            gt=0.0, le=3600.0),
     Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
@@ -286,73 +253,9 @@ RUN = KeyTable((
     Key(ROBOTS, Value('sections by name', refuse_nested),
         'several robots by name, each from a run file of its own', None, in_text=InText.NEVER),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
-    Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
+    Key(BODY, _BODY, 'what several actuators move together', None,
+        of=lambda run: run.only_body),
     Key('bodies', Named(_BODY, are_placed=True), 'several bodies by name, instead of `body`', None,
         instead_of=('leg', BODY),
-        of=lambda run: run.bodies if run.bodies and _only(run) is None else None)))
+        of=lambda run: run.bodies if run.bodies and run.only_body is None else None)))
 """Every key of a run file, and of a resolved text."""
-
-
-Origins = Mapping[str, Section]
-"""The layered sections that sheets and loads were built from, by key of the resolved text."""
-
-
-def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig, Origins]:
-    """
-    Return the run of a file's tree, and what it was built from.
-
-    ``is_checked``: whether the parts must fit together, too. Those of the text in a bag have been
-    checked when it was recorded, perhaps by another version.
-
-    Raises
-    ------
-    ConfigError
-        The content cannot be run.
-
-    """
-    values = RUN.read(tree, place)
-    step_ns, offset_ns = _times(values, place)
-    bodies, origins = bodies_of(values, place, step_ns, is_checked)
-    supplies = supplies_of(values, list(values['actuators']), place)
-    actuators = []
-    below, moved = place / 'actuators', moved_by(bodies, values['actuators'], place)
-    for name, own in values['actuators'].items():
-        if name == COORDINATOR:
-            raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
-        _refuse_without_model(name, values['actuators'], below)
-        actuator, layers = actuator_of(name, own, below / name, Around(
-            step_ns, values[LINK], moved.get(name), is_checked))
-        actuators.append(actuator)
-        origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
-    stops = emergency_stops_of(
-        values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS)
-    if is_checked:
-        refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
-        refuse_without_dump(stops, supplies, place / EMERGENCY_STOPS)
-    values |= {
-        'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
-        EMERGENCY_STOPS: stops,
-        'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
-        'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
-    controllers = values.pop(CONTROLLERS)
-    run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
-                       if name in values})
-    return run.with_controllers(controllers.nodes).calling(controllers.called), origins
-
-
-def _refuse_without_model(name: str, actuators: Mapping[str, Any], place: Place) -> None:
-    """Refuse an actuator without model; it may be meant as another one of the run."""
-    if actuators[name]['model'] is not None or actuators[name]['sheet'] is not None:
-        return
-    others = [key for key, own in actuators.items() if own['model'] is not None]
-    meant = f'; if one of the others is meant: {alternatives(name, others)}' if others else ''
-    raise ConfigError(f'{place / name} lacks model, one of {listed(model_names())}{meant}')
-
-
-def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
-    """Return macro step and offset of the REU's samples, ns."""
-    def of(in_ms: Key, in_ns: Key) -> WrittenTime:
-        if values[in_ns.name] is None:
-            return WrittenTime(in_ms.name, values[in_ms.name], 'ms', 1_000_000)
-        return WrittenTime(in_ns.name, values[in_ns.name], 'ns', 1)
-    return on_grid(of(_STEP, _STEP_NS), of(_OFFSET, _OFFSET_NS), place)

@@ -13,9 +13,9 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
 from isa_ros.surroundings.circuits.manifold import ManifoldPart
 from isa_ros.surroundings.circuits.sheet import CircuitSupply, Part
+from isa_ros.surroundings.emergency_line import EMERGENCY_STOP
 from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.surroundings.supply import SupplySheet
-from isa_ros.surroundings.surroundings import EMERGENCY_STOP
 
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""

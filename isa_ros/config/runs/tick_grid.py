@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from isa_ros.config.text.keys import Key, Value
+from isa_ros.config.text.keys import InText, Key, nanoseconds, number, Value
 from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
 from isa_ros.errors import ConfigError
@@ -61,6 +61,15 @@ def on_grid(step: WrittenTime, offset: WrittenTime, place: Place) -> tuple[int, 
     return step.ns, offset.ns
 
 
+def times_of(values: dict[str, Any], place: Place) -> tuple[int, int]:
+    """Return macro step and offset of the REU's samples, ns; raises as `on_grid`."""
+    def of(in_ms: Key, in_ns: Key) -> WrittenTime:
+        if values[in_ns.name] is None:
+            return WrittenTime(in_ms.name, values[in_ms.name], 'ms', 1_000_000)
+        return WrittenTime(in_ns.name, values[in_ns.name], 'ns', 1)
+    return on_grid(of(STEP, STEP_NS), of(OFFSET, OFFSET_NS), place)
+
+
 def ticks_in(seconds: float, step_ns: int, where: str) -> int:
     """
     Return a time in ticks; ``where`` is its name in messages.
@@ -88,3 +97,9 @@ def _start_time(value: Any, place: Place) -> int:
 START_TIME = Key(
     'start_time_s', Value('whole number', _start_time, 's'),
     'time of all stamps at t = 0, since 1970', None, '0', of=lambda run: run.start_time_s or None)
+STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
+OFFSET = number(
+    'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
+    in_text=InText.NEVER, ge=0.0, le=100.0)
+STEP_NS = nanoseconds('step_ns', 'the macro step', STEP, gt=0, le=100_000_000)
+OFFSET_NS = nanoseconds('controller_offset_ns', 'the offset', OFFSET, ge=0, le=100_000_000)

@@ -3,7 +3,7 @@
 from isa_ros.core.device import QUICK_STOP
 from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device.axis import Axis
-from isa_ros.reu.device import STAYS
+from isa_ros.reu.device_record import STAYS
 from isa_ros.reu.flow_stop import REST_SPAN, REST_TIME
 from isa_ros.tick.emergency_stop import LONGEST_STOP
 

@@ -4,8 +4,10 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.actuator import participant_digest, SmartActuator, Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.constants import participant_digest
+from isa_ros.actuator.timing import Timing
 from isa_ros.actuator.tunable import changing
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
 from isa_ros.controller import Setpoint
@@ -102,7 +104,7 @@ class ActuatorNode(Node):
     @property
     def digest(self) -> str:
         """Return a hash of the resolved parameters and of the timing."""
-        return participant_digest(self.actuator, self.setup.timing)
+        return participant_digest(self.actuator.digest, self.setup.timing)
 
     def warm_up(self) -> None:
         """Compile what a tick needs, or load it from the cache, on a copy of the actuator."""

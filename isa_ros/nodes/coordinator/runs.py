@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from isa_ros.actuator.actuator import participant_digest
+from isa_ros.actuator.constants import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.config.text.names import parted, placed
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
@@ -120,8 +120,9 @@ def _participants(
     if not are_here:
         warm_up_ticks(actuators[0])
         warm_up_rounds(Rows(len(actuators), surroundings))
-    expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
-                for actuator in actuators]
+    expected = [
+        Expected(own.name, '' if are_here else participant_digest(own.digest, timing))
+        for own in actuators]
     expected += [Expected(name, '') for name in run.controllers]
     bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
     roster = Roster([own.name for own in expected],

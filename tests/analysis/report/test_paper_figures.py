@@ -7,7 +7,7 @@ from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.scenario import FIGURES
+from isa_ros.scenario.figures import FIGURES
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 import numpy as np

@@ -8,7 +8,7 @@ from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.analysis.signals import recorded_result
 from isa_ros.bag.reader import Bag
 from isa_ros.config.recorded_run import recorded_run
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.diagnostics import ENERGY
 from isa_ros.run.recorded import history_of
@@ -110,7 +110,7 @@ def test_a_configuration_without_actuators_is_refused_with_its_own_reason():
         recorded_run('{name: x, magic: 1}', 'old.yaml')
     text = Bag(GOLDEN / 'rotor_step').provenance.configuration
     own = recorded_run(text, 'own')
-    assert own.problem == '' and own.run == RunConfig.from_yaml(text)
+    assert own.problem == '' and own.run == run_of_text(text)
 
 
 def test_a_cavity_in_the_diagnostics_of_a_bag_is_an_event(tmp_path):

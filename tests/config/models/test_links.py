@@ -10,6 +10,7 @@ from isa_ros.config.models.wires import refuse_overfull, wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.errors import ConfigError
 import pytest
@@ -66,7 +67,7 @@ def test_the_keys_of_isa_params_are_taken_too():
 
 def test_a_resolved_link_reads_back():
     run = leg(link={'kind': 'ethercat', 'cycle_ms': 0.25, 'loss': 0.1}, seed=7)
-    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
 
 
 @pytest.mark.parametrize('changes, message', [

@@ -12,7 +12,8 @@ from isa_ros.config.listing import describe
 from isa_ros.config.models import scaling
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.default_actuator import default_actuator
-from isa_ros.config.runs.run_config import run_of, RunConfig
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of, run_of_text
 from isa_ros.config.text.sections import merge, Place, sourced, SourcedValue
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.parameter import Parameters
@@ -240,7 +241,7 @@ def test_the_table_shows_the_scaled_value_and_its_source(tmp_path: Path) -> None
                      if line.startswith('reu.position.force_in '))
     assert ' 5174 ' in unchanged and 'derived, A_B P_S; scales with stall_in' in unchanged
     run = own()
-    assert RunConfig.from_yaml(run.to_yaml()).actuators == run.actuators
+    assert run_of_text(run.to_yaml()).actuators == run.actuators
     assert 'scales_with' not in run.to_yaml()
 
 

@@ -7,8 +7,8 @@ import shutil
 from isa_ros.config.differences import key_differences
 from isa_ros.config.robots.geometry import motion_of, point, poses, quaternion
 from isa_ros.config.robots.start import coordinates, root_pose
-from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
@@ -35,7 +35,7 @@ def test_the_resolved_text_needs_no_urdf(runs, name, tmp_path, monkeypatch):
     text = runs[name].to_yaml()
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr('isa_ros.config.runs.robot_config.find_drawing', None)
-    found = RunConfig.from_yaml(text)
+    found = run_of_text(text)
     assert found == runs[name]
     assert found.to_yaml() == text
     first, second = robot(found).sheet, robot(runs[name]).sheet
@@ -221,7 +221,7 @@ def test_two_robots_have_their_own_actuators(tmp_path):
     run = load_run(path)
     assert [own.actuator for body in run.bodies for own in body.drives] == [
         'r1/hip', 'r1/knee', 'r2/hip', 'r2/knee']
-    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
 
 
 def test_a_scenario_starts_a_robot_elsewhere(runs):

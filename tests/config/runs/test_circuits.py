@@ -7,6 +7,7 @@ from isa_ros.config.listing import describe
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.errors import ConfigError
 from isa_ros.scripting.run import load
@@ -35,7 +36,7 @@ def test_each_manifold_feeds_the_actuators_it_names() -> None:
 
 def test_its_text_is_free_of_loss() -> None:
     text = STATION.to_yaml()
-    again = RunConfig.from_yaml(text)
+    again = run_of_text(text)
     assert again == STATION and again.to_yaml() == text and again.digest == STATION.digest
     assert list(key_differences(RUN.tree(STATION), Place('bag'))) == []
 

@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 import isa_ros
-from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.run_config import RUN
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.controller import Controller, Setpoint
 from isa_ros.errors import ConfigError, RunError
@@ -29,7 +30,7 @@ def test_a_section_with_a_class_is_called_and_an_empty_one_is_a_node():
 
 def test_the_resolved_text_has_all_of_it():
     run = leg(pull={'class': PULLER, **HFE}, sway={}).configuration
-    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
     assert parse(run.to_yaml(), '')['controllers'] == {
         'sway': {}, 'pull': {'class': PULLER, **HFE}}
     assert isa_ros.load('leg').configuration.digest != run.digest

@@ -5,7 +5,7 @@ from typing import Any
 import isa_ros
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.one_robot import one_robot
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import read
 from isa_ros.controller import Controller, Setpoint, Setpoints, State
 from isa_ros.errors import ConfigError
@@ -50,7 +50,7 @@ def test_each_robot_moves_as_alone_with_its_controller():
     """Bit for bit: the controllers of two files of one name, made for their robots."""
     run = isa_ros.load(pair())
     assert [own.name for own in run.configuration.called] == ['r1/count', 'r2/count']
-    assert RunConfig.from_yaml(run.configuration.to_yaml()) == run.configuration
+    assert run_of_text(run.configuration.to_yaml()) == run.configuration
     both = run.simulate(0.02)
     for robot, section in (('r1', OF_R1), ('r2', OF_R2)):
         alone = isa_ros.load('leg', changes={'controllers': {'count': section}}).simulate(0.02)

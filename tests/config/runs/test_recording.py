@@ -5,8 +5,8 @@ from pathlib import Path
 from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
 from isa_ros.config.runs.recording import RECORD, RecordConfig
-from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.topic import Topic
@@ -103,7 +103,7 @@ def test_pattern_that_does_not_fit_the_run_is_refused(text: str, expected: str) 
 def test_section_is_part_of_the_resolved_configuration(tmp_path: Path) -> None:
     run = load_run(with_record(tmp_path, ALL))
     assert run.record == record(ALL)
-    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
 
 
 def test_how_a_run_is_recorded_is_no_part_of_what_it_is(tmp_path: Path) -> None:
@@ -117,7 +117,7 @@ def test_configuration_from_before_the_section_records_everything() -> None:
     text = run.to_yaml()
     start = text.index('record:')
     without = text[:start] + text[text.index('actuators:'):]
-    assert RunConfig.from_yaml(without) == run
+    assert run_of_text(without) == run
 
 
 def test_command_line_wins_and_is_recorded(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ def test_command_line_wins_and_is_recorded(tmp_path: Path) -> None:
     session = prepare(Request(config=path, out=tmp_path / 'bag', compression='lz4', split_mb=0.0))
     assert session.run.record.storage == Storage(compression='lz4', split_mb=0.0)
     assert session.run.record.leave_out == ('/*/references',)
-    assert RunConfig.from_yaml(session.run.to_yaml()).record == session.run.record
+    assert run_of_text(session.run.to_yaml()).record == session.run.record
     assert prepare(Request(config=path, out=tmp_path / 'bag')).run.record == record(ALL)
 
 

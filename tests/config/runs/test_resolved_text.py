@@ -10,6 +10,7 @@ from isa_ros.config.runs.emergency_stops import EmergencyStopConfig
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.config.text.keys import InText, KeyDifference
 from isa_ros.config.text.sections import Place
@@ -34,8 +35,8 @@ FULL = replace(
 def test_the_resolved_text_is_read_back_as_it_was_written(run: RunConfig) -> None:
     """Every value bit for bit, and the same text of it."""
     text = run.to_yaml()
-    assert RunConfig.from_yaml(text) == run
-    assert RunConfig.from_yaml(text).to_yaml() == text
+    assert run_of_text(text) == run
+    assert run_of_text(text).to_yaml() == text
     assert list(key_differences(parse(text, 'text'), Place('text'))) == []
 
 
@@ -62,7 +63,7 @@ def test_an_older_text_with_one_supply_and_a_leg_is_read() -> None:
     text = older(LEG)
     assert re.search(r'^supply:$', text, re.MULTILINE)
     assert re.search(r'^leg:$', text, re.MULTILINE)
-    again = RunConfig.from_yaml(text)
+    again = run_of_text(text)
     assert again == LEG and again.digest == LEG.digest
     assert list(key_differences(parse(text, 'text'), Place('text'))) == []
 
@@ -75,7 +76,7 @@ def test_a_text_with_both_forms_is_refused() -> None:
                                 ('leg', leg, 'has leg and body, must have one')):
         text = dump(dict(parse(LEG.to_yaml(), 'text')) | {key: value})
         with pytest.raises(ConfigError, match=f'old.yaml: {message}'):
-            RunConfig.from_yaml(text, 'old.yaml')
+            run_of_text(text, 'old.yaml')
 
 
 def test_a_modern_tree_is_left_alone() -> None:
@@ -134,7 +135,7 @@ def test_a_text_from_before_return_lines_is_read_and_said() -> None:
     text, count = re.subn(r'^ +return_line:.*\n', '', run.to_yaml(),
                           flags=re.MULTILINE)
     assert count == 1
-    assert RunConfig.from_yaml(text) == run
+    assert run_of_text(text) == run
     assert list(key_differences(parse(text, 'text'), Place('t.yaml'))) == [KeyDifference(
         't.yaml: supplies.low.return_line is missing in the bag, held is meant', False)]
 
@@ -148,4 +149,4 @@ def test_a_damaged_text_is_refused(pattern: str, replacement: str, message: str)
     text, count = re.subn(pattern, replacement, TWO.to_yaml(), count=1, flags=re.MULTILINE)
     assert count == 1
     with pytest.raises(ConfigError, match=rf'^t.yaml.*{message}'):
-        RunConfig.from_yaml(text, 't.yaml')
+        run_of_text(text, 't.yaml')

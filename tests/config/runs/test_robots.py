@@ -7,6 +7,7 @@ import isa_ros
 from isa_ros.config.listing import describe
 from isa_ros.config.paths import CONFIG, find, find_drawing
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import dump, read
 from isa_ros.errors import ConfigError
@@ -45,7 +46,7 @@ def test_all_parts_of_a_robot_are_in_its_namespace():
     assert [(own.name, own.actuators) for own in run.emergency_stops] == [
         (r, tuple(f'{r}/{j}' for j in joints)) for r in BOTH]
     assert run.name == 'pair' and run.source == 'pair.yaml'
-    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert run_of_text(run.to_yaml()) == run
 
 
 def test_a_robot_has_other_values_by_the_keys_of_its_file():
