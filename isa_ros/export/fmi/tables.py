@@ -59,7 +59,8 @@ def _declared() -> Iterator[str]:
         '/* Of the actuator: whether its loops are on, and a current without a jump. */',
         'extern const int32_t IS_ON, FADE, EVERY_BLOCK;',
         'void ISA(put_number)(ISA(t) *self, int32_t place, double value);',
-        'int64_t *ISA(flag)(ISA(t) *self, int32_t place);')
+        'int64_t *ISA(flag)(ISA(t) *self, int32_t place);',
+        'uint64_t ISA(checksum)(const unsigned char *state, size_t bytes);')
 
 
 def _words(supply: Supplied) -> list[str]:

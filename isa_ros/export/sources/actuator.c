@@ -253,13 +253,15 @@ static int are_possible(const unsigned char *state)
 }
 
 /*
- * Return the checksum of a state. Each step maps sums one to one, so that a change within 8 bytes
- * always changes it.
+ * Return the checksum of whole words. Each step maps sums one to one, so that a change within 8
+ * bytes always changes it.
  */
-static uint64_t checksum(const unsigned char *state)
+uint64_t ISA(checksum)(const unsigned char *state, size_t bytes);
+
+uint64_t ISA(checksum)(const unsigned char *state, size_t bytes)
 {
   uint64_t sum = 0, word;
-  for (size_t at = 0; at < AT_CHECKSUM; at += sizeof word) {
+  for (size_t at = 0; at < bytes; at += sizeof word) {
     copy(&word, state + at, sizeof word);
     sum = (sum ^ word) * MIXER;
     sum ^= sum >> 32;
@@ -281,7 +283,7 @@ ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
     to += SAVED[k].bytes;
   }
   copy(to, TAIL, sizeof TAIL);
-  sum = checksum(state);
+  sum = ISA(checksum)(state, AT_CHECKSUM);
   copy(to + sizeof TAIL, &sum, sizeof sum);
   return are_possible(state) ? ISA_OK : ISA_NOT_FINITE;
 }
@@ -295,7 +297,7 @@ static int check_state(const unsigned char *state)
   copy(&sum, state + AT_CHECKSUM, sizeof sum);
   for (size_t k = 0; k < sizeof TAIL; k++)
     if (state[AT_CHECKSUM - sizeof TAIL + k] != TAIL[k]) return ISA_WRONG_STATE;
-  if (sum != checksum(state)) return ISA_WRONG_STATE;
+  if (sum != ISA(checksum)(state, AT_CHECKSUM)) return ISA_WRONG_STATE;
   if (t_ns < 0 || t_ns % STEP_NS || t_ns / STEP_NS >= MAX_TICKS) return ISA_WRONG_STATE;
   return are_possible(state) ? ISA_OK : ISA_WRONG_STATE;
 }

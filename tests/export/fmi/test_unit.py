@@ -7,6 +7,7 @@ import pytest
 fmpy = pytest.importorskip('fmpy')
 from tests.export.fmi.importing import DISCARD, ERROR, STEP, Unit, WARNING  # noqa: E402
 from tests.export.fmi.runs import inputs_of, SAMPLED  # noqa: E402
+from tests.export.libraries import sealed  # noqa: E402
 
 pytestmark = pytest.mark.slow
 HEAD = 33    # bytes of a state before its inputs: the token
@@ -213,22 +214,44 @@ def test_a_state_has_what_was_written_since_the_last_step(make):
     assert unit.get('device_event') == other.get('device_event') != 1
 
 
+def with_checksum(state):
+    """Return a state with the checksum of what it has now."""
+    return sealed(np.frombuffer(state, np.uint8)).tobytes()
+
+
 def test_bytes_that_are_no_state_are_refused(make):
     unit, other = make(), make()
     unit.step(20)
     state, before = unit.state(), other.state()
+    assert with_checksum(state) == state
     pressure = np.float64(unit.get('supply.pressure')).tobytes()
     assert HEAD < state.index(pressure) < len(state) // 4    # of the supply, before the actuator
-    for text, broken in ((f'a state of {len(state) - 1} bytes, must be', state[:-1]),
-                         ('a state of 0 bytes, must be', b''),
-                         ('not a state of this unit', b'x' + state[1:]),
-                         ('not a state of this unit', state.replace(pressure, NAN, 1)),
-                         ('not a state of this unit', state[:HEAD] + NAN + state[HEAD + 8:]),
-                         ('', state[:-1] + bytes([state[-1] ^ 1])),
-                         ('', state[:len(state) // 2] + b'\xff' * 400
-                          + state[len(state) // 2 + 400:])):
+    middle = len(state) // 2
+    for text, broken in (
+            (f'a state of {len(state) - 1} bytes, must be', state[:-1]),
+            ('a state of 0 bytes, must be', b''),
+            ('not a state of this unit', with_checksum(b'x' + state[1:])),
+            ('not a state of this unit', with_checksum(state.replace(pressure, NAN, 1))),
+            ('not a state of this unit', with_checksum(state[:HEAD] + NAN + state[HEAD + 8:])),
+            ('', with_checksum(state[:middle] + b'\xff' * 400 + state[middle + 400:]))):
         refused(other, ERROR, text, other.restore, broken)
     assert other.state() == before
+
+
+def test_any_damage_of_a_state_is_refused(make):
+    """Also where the number would be a possible one: an input, the supply, the time."""
+    unit, other = make(), make()
+    unit.step(20)
+    state, before = unit.state(), other.state()
+    places = (0, HEAD + 1, HEAD + 8 * 5, len(state) // 5, len(state) // 2, len(state) - 9,
+              len(state) - 1)
+    for place in places:
+        damaged = bytearray(state)
+        damaged[place] ^= 1
+        refused(other, ERROR, 'not a state of this unit', other.restore, bytes(damaged))
+    assert other.state() == before
+    other.restore(state)
+    assert other.state() == state
 
 
 def test_reset_is_a_new_instance(make):

@@ -1,4 +1,7 @@
-/* The state of a unit as bytes: the token, what is given, the supply, the actuator. */
+/*
+ * The state of a unit as bytes: the token, what is given, the supply, the actuator, and a checksum
+ * of the words before it.
+ */
 #include "inside.h"
 
 #include <stdio.h>
@@ -12,16 +15,25 @@ static const struct part {
 
 #define PARTS (sizeof SUPPLY_STATE / sizeof *SUPPLY_STATE)
 
-size_t unit_state_size(void)
+/* Return the bytes of a state before its checksum: whole words, of which the last may be filled. */
+static size_t summed(void)
 {
   size_t bytes = sizeof TOKEN + sizeof(struct given) + ISA(state_size)();
   for (size_t k = 0; k < PARTS; k++) bytes += (size_t)SUPPLY_STATE[k].bytes;
-  return bytes;
+  return (bytes + sizeof(uint64_t) - 1) / sizeof(uint64_t) * sizeof(uint64_t);
+}
+
+size_t unit_state_size(void)
+{
+  return summed() + sizeof(uint64_t);
 }
 
 static enum status save(const unit_t *unit, unsigned char *state)
 {
   const size_t size = ISA(state_size)();
+  unsigned char *const end = state + summed();
+  const unsigned char *const begin = state;
+  uint64_t sum;
   int code;
   memcpy(state, TOKEN, sizeof TOKEN);
   state += sizeof TOKEN;
@@ -32,6 +44,10 @@ static enum status save(const unit_t *unit, unsigned char *state)
     state += SUPPLY_STATE[k].bytes;
   }
   code = ISA(save)(unit->actuator, state, size);
+  state += size;
+  memset(state, 0, (size_t)(end - state));
+  sum = ISA(checksum)(begin, summed());
+  memcpy(end, &sum, sizeof sum);
   return code ? unit_say(unit, STATUS_ERROR, ISA(message)(code)) : STATUS_OK;
 }
 
@@ -59,10 +75,13 @@ static enum status restore(unit_t *unit, const unsigned char *state)
 {
   static const char *const REFUSED = "the bytes are not a state of this unit";
   struct given given;
-  const unsigned char *supply = state + sizeof TOKEN + sizeof given;
-  const unsigned char *actuator = state + unit_state_size() - ISA(state_size)();
+  const unsigned char *supply = state + sizeof TOKEN + sizeof given, *actuator = supply;
+  uint64_t sum;
   int code;
-  if (memcmp(state, TOKEN, sizeof TOKEN) != 0) return unit_say(unit, STATUS_ERROR, REFUSED);
+  for (size_t k = 0; k < PARTS; k++) actuator += SUPPLY_STATE[k].bytes;
+  memcpy(&sum, state + summed(), sizeof sum);
+  if (memcmp(state, TOKEN, sizeof TOKEN) != 0 || sum != ISA(checksum)(state, summed()))
+    return unit_say(unit, STATUS_ERROR, REFUSED);
   memcpy(&given, state + sizeof TOKEN, sizeof given);
   if (!is_possible(&given) || !are_finite(supply, (size_t)(actuator - supply)))
     return unit_say(unit, STATUS_ERROR, REFUSED);
