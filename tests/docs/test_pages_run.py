@@ -3,6 +3,7 @@
 from contextlib import nullcontext
 from pathlib import Path
 
+from matplotlib.testing.compare import compare_images
 import pytest
 from tests.docs import blocks
 from tests.docs.blocks import blocks_of, run
@@ -11,10 +12,12 @@ from tests.ros.started import is_alive, wait_for
 
 DOCS = Path(__file__).parents[2] / 'docs'
 PAGES = {
-    'c_controller': 3, 'controller': 9, 'coupling': 1, 'layouts': 1, 'lesson_pressure': 3,
-    'lockstep': 1,
-    'pump_sizing': 3, 'reproduce': 8, 'signs': 1, 'tutorial': 12}
+    'c_controller': 3, 'controller': 9, 'coupling': 1, 'explanation': 1, 'layouts': 1,
+    'lesson_pressure': 7, 'lesson_tuning': 11, 'lesson_valve': 5, 'lockstep': 1, 'pump_sizing': 3,
+    'reproduce': 8, 'signs': 1, 'tutorial': 12}
 """Pages, and how many of their blocks are run or written to a file."""
+LARGEST_DIFFERENCE = 1.0
+"""Of a lesson's figure, root mean square of 256 levels; a curve elsewhere gives 5 and more."""
 
 
 @pytest.mark.slow
@@ -25,6 +28,11 @@ def test_a_page_runs_as_printed(
     with held_domain(monkeypatch):
         count = run((DOCS / f'{page}.md').read_text(encoding='utf-8'), tmp_path)
     assert count == PAGES[page]
+    drawn = {path.name for path in tmp_path.glob(f'{page}.png')}
+    assert bool(drawn) == page.startswith('lesson')
+    for name in drawn:
+        assert compare_images(
+            DOCS / 'figures' / name, tmp_path / name, tol=LARGEST_DIFFERENCE) is None
 
 
 def test_an_output_that_is_not_printed_is_noticed(tmp_path: Path) -> None:
