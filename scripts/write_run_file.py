@@ -24,8 +24,10 @@ from isa_ros.config.runs.supplies import SUPPLY_KEYS
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import InText, parameter_rows, REQUIRED
 from isa_ros.config.text.parameter_sets import members
+from isa_ros.core.oil_properties import MineralOil
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.circuits.heat import TankHeat
 from isa_ros.surroundings.circuits.line import Wall
 from isa_ros.surroundings.circuits.oil import Oil
 from isa_ros.surroundings.circuits.sheet import Part
@@ -82,7 +84,8 @@ def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
     return with_parts(text, {
         'run': keys(RUN), 'supplies': keys(SUPPLY_KEYS), 'supply': by_kind(SupplySheet),
-        'part': by_kind(Part), 'oil': parameters(Oil), 'wall': by_kind(Wall),
+        'part': by_kind(Part), 'oil': parameters(Oil),
+        'heat': by_kind(TankHeat), 'warm oil': parameters(MineralOil), 'wall': by_kind(Wall),
         'return line': by_kind(ReturnLine), 'dump': by_kind(NoneDump | LagDump | ValveDump),
         'emergency stop': keys(GROUP), 'record': keys(RECORD),
         'storage': parameters(Storage), 'link': parameters(LinkSheet),

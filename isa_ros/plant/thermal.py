@@ -11,13 +11,13 @@ or less than at mid stroke.
 from dataclasses import dataclass
 import math
 
-from isa_ros.core.elementary import expm1
 from isa_ros.core.kernel import kernel
+from isa_ros.core.oil_properties import (
+    MineralOil, PROPERTIES, properties_record, softness, thickness)
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.phi import phi_1, phi_2
 from isa_ros.core.record import record
 from isa_ros.plant.hose import warm_hoses
-from isa_ros.plant.oil_properties import (
-    MineralOil, PROPERTIES, properties_record, softness, thickness)
 import numpy as np
 
 
@@ -116,18 +116,6 @@ def warm(celsius, plant):
     if plant.hoses.is_on > 0.0:
         warm_hoses(thicker, plant.chambers.beta, plant.hoses)
     plant.spool.bias = own.bias + own.bias_per_k * (celsius - own.oil.celsius)
-
-
-@kernel
-def phi_1(x):
-    """Return (e^x - 1)/x, 1 at x = 0."""
-    return 1.0 if x == 0.0 else expm1(x) / x
-
-
-@kernel
-def phi_2(x):
-    """Return (e^x - 1 - x)/x^2, 1/2 at x = 0; exact where x is so small that it rounds away."""
-    return 0.5 if x == 0.0 else (phi_1(x) - 1.0) / x
 
 
 @kernel

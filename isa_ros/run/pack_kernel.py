@@ -18,7 +18,7 @@ APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping
            'reference', 'kinds')
 """Fields of an applied `COMMAND` that are published, behind the pressures."""
 _PRESSURE_A, _PRESSURE_B, _CUSHION = (_SAMPLE.index(name) for name in PRESSURES)
-_GAS = _SUPPLY.index(SIGNALS[2])
+_GAS, _OIL = (_SUPPLY.index(name) for name in SIGNALS[2:])
 
 
 class Target(NamedTuple):
@@ -75,8 +75,8 @@ def pack(own):
     for m in range(len(own.supplies)):
         supply = own.supplies[m]
         values[at], values[at + 1] = supply[0] + ATMOSPHERE, supply[1] + ATMOSPHERE
-        values[at + 2] = supply[_GAS]
-        at += 3
+        values[at + 2], values[at + 3] = supply[_GAS], supply[_OIL]
+        at += 4
     for body in own.bodies:
         for j in range(len(body)):
             values[at] = body[j]

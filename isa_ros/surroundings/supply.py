@@ -79,11 +79,13 @@ SUPPLY_FIELDS = (
     Field('held_energy', 'J', 'paid at pressures held over a tick, not given by a line'),
     Field('dump_opening', '1', 'of the dump valve: 0 shut, 1 open'),
     Field('gas_temperature', 'celsius', 'of an accumulator of a circuit; 0 of all else'),
+    Field('oil_temperature', 'celsius', 'of a circuit whose tank has a heat; 0 of all else'),
+    Field('heat', 'J', 'that its oil got of losses since t = 0; of tank and coolers: gave away'),
 )
 """The sample of one supply at the end of a tick."""
 SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
-SUPPLY_STATE = record_type(SUPPLY_FIELDS[:-1])
-"""What a saved state has of it: a circuit has the temperature in its own state."""
+SUPPLY_STATE = record_type(SUPPLY_FIELDS[:-3])
+"""What a saved state has of it: a circuit has temperatures and heat in its own state."""
 
 
 def saved_states(samples: Records, names: Sequence[str]) -> bytes:

@@ -2,10 +2,13 @@
 
 from isa_ros.analysis.report.circuit_panels import circuit_signals
 from isa_ros.analysis.signals.signals import Signals
-from isa_ros.config.runs.supplies import GAS
+from isa_ros.config.runs.supplies import GAS, OIL, PRESSURE
 from isa_ros.core.units import MPA
 import numpy as np
 
+_OF_CIRCUIT = {PRESSURE: ('pressure', MPA, 'MPa gauge'),
+               GAS: ('gas temperature', 1.0, 'celsius'),
+               OIL: ('oil temperature', 1.0, 'celsius')}
 HEADER = ('signal', 'least', 'greatest', 'unit')
 
 
@@ -26,11 +29,11 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
             values.append((f'{name} cushion pressure', 0.0, float(cushion.max()), 'MPa gauge'))
     for supply in signals.run.supplies:
         for name, recorded in circuit_signals(supply, signals).items():
-            is_gas = name.endswith(GAS)
-            series = recorded.values if is_gas else recorded.values / MPA
+            part, _, field = name.rpartition('.')
+            what, scale, unit = _OF_CIRCUIT[field]
+            series = recorded.values / scale
             values.append((
-                f'{name.rpartition(".")[0]} {"gas temperature" if is_gas else "pressure"}',
-                float(series.min()), float(series.max()), 'celsius' if is_gas else 'MPa gauge'))
+                f'{part} {what}', float(series.min()), float(series.max()), unit))
     for leg in signals.run.legs:
         if f'{leg.name}.foot_force' not in signals:
             continue

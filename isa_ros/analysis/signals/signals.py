@@ -44,7 +44,7 @@ AT_EVERY_TICK = tuple(
     field for field in _ACTUATOR if field not in ('cushion_pressure', 'temperature'))
 """Fields of a `SAMPLE` that every bag has at every tick."""
 _SUPPLY = {'pressure': 'fluid_pressure', 'return_pressure': 'fluid_pressure',
-           'gas_temperature': 'temperature'}
+           'gas_temperature': 'temperature', 'oil_temperature': 'temperature'}
 """Field of the message by field of a `SUPPLY_SAMPLE`."""
 _CLOCK = '/clock'
 

@@ -13,6 +13,7 @@ from textwrap import fill
 from typing import Any, NamedTuple
 import warnings
 
+from isa_ros.analysis.studies import warm_up
 from isa_ros.core.accounts import HELD, LEAKAGE, PUMP, SUPPLY_SHARES, THROTTLING
 from isa_ros.core.units import LPM, MPA
 from isa_ros.scripting.result import Result
@@ -94,6 +95,7 @@ class Supplied:
     peak_power: float
     lost: float         # W, in the circuit
     valves: float       # W, in the servo valves
+    heat: float         # W, of the oil
     fell: float         # s; NaN: it did not
     gap: float          # of the account, of what the pump gave
     time: NDArray[np.float64]       # s
@@ -135,12 +137,14 @@ def supplied(unit: Unit, result: Result) -> Supplied:
     valves = np.sum([_rate(result, f'{own.name}.{share.field}') for share in (THROTTLING, LEAKAGE)
                      for own in result.scenario.run.actuators], axis=0)
     steady = time[1:] > late
+    power = float(pump[steady].mean())
     low = result[f'{ROBOT}.position'][:, 2] < FALLEN
     return Supplied(
         unit, float(stood - before.min()), float(stood - after.min()) if len(after) else np.nan,
         min(float(result[f'{UNIT}/{place}.pressure'].min()) for place in MANIFOLDS),
-        float(drawn[steady].mean()), float(drawn.max()), float(pump[steady].mean()),
+        float(drawn[steady].mean()), float(drawn.max()), power,
         float(pump.max()), float(lost[steady].mean()), float(valves[steady].mean()),
+        warm_up.heat_of(result, UNIT, power, late),
         float(time[low.argmax()]) if low.any() else np.nan, gap_of(result.accounts[UNIT]),
         time, rail, drawn, result[f'{UNIT}.pump_flow'])
 
@@ -181,6 +185,13 @@ def write_page(found: Sequence[Supplied], directory: Path) -> list[Path]:
     page.figure(NAME, 'Pressure of the rail, and the flows of the chosen unit',
                 png(_drawn(found)))
     page.paragraph(_seen({one.unit: one for one in found}))
+    chosen = next((one for one in found if one.unit == CHOSEN), None)
+    if chosen is not None:
+        before, follows = (fill(text, 99) for text in warm_up.seen(chosen.heat))
+        page.section('Warm-up')
+        page.paragraph(before)
+        page.table(warm_up.table(chosen.heat), RIGHT)
+        page.paragraph(follows)
     return page.write(directory)
 
 

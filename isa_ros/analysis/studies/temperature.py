@@ -22,9 +22,9 @@ from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import build
+from isa_ros.core.oil_properties import softness, thickness
 from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.chambers import oil_stiffness
-from isa_ros.plant.oil_properties import softness, thickness
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.thermal import heat, THERMAL_STATE
 from isa_ros.scripting.run import load, Run
@@ -75,6 +75,9 @@ Neglected: the density's change, heat of compression, which is a fifth of the he
 and the influence of the viscosity on turbulent flow, on spool and pilot stage. A temperature of
 start, supply or air at which friction is too fast for the plant's step is refused, as -30 celsius
 is for the ISA v5.
+
+A supply that is a circuit may have a temperature of its own
+([parts.md](parts.md#temperature-of-the-oil)); `supply_celsius` of an actuator does not follow it.
 
 This page is written by
 

@@ -11,7 +11,8 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
-from isa_ros.surroundings.circuits.manifold import ManifoldPart
+from isa_ros.surroundings.circuits.heat import MixedHeat
+from isa_ros.surroundings.circuits.manifold import ManifoldPart, TankPart
 from isa_ros.surroundings.circuits.sheet import CircuitSupply, Part
 from isa_ros.surroundings.emergency_line import EMERGENCY_STOP
 from isa_ros.surroundings.return_line import VolumeReturn
@@ -20,6 +21,7 @@ from isa_ros.surroundings.supply import SupplySheet
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""
 PRESSURE, RETURN, GAS = 'pressure', 'return_pressure', 'gas_temperature'
+OIL = 'oil_temperature'
 """Signals that have a topic."""
 
 
@@ -82,7 +84,9 @@ class SupplyConfig:
 def _published_of(part: Part) -> tuple[str, ...]:
     """Return the signals of a part of a circuit that have a topic."""
     return ((PRESSURE,) if isinstance(part, ManifoldPart)
-            else (GAS,) if isinstance(part, AccumulatorPart) else ())
+            else (GAS,) if isinstance(part, AccumulatorPart)
+            else (OIL,) if isinstance(part, TankPart) and isinstance(part.heat, MixedHeat)
+            else ())
 
 
 def _fed(value: Any, place: Place) -> Any:

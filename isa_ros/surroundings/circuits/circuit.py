@@ -21,6 +21,7 @@ from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.circuits.stiffness import steps_of
+from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
 import numpy as np
@@ -57,14 +58,15 @@ class Circuit:
         self.has_port = True
         """Whether its pressures move within a tick."""
         self._name, self._fed, self._step = name, tuple(fed), step_ns * 1e-9
-        network = network_of(sheet)
+        self._sheet, self._warmth = sheet, warmth_of(sheet)
+        network = self._network_of(sheet)
         self._nodes = [network.node(own.place) for own in fed]
         self._returns = [network.node(sheet.return_of(own.place)) for own in fed]
         self._first = rows_of_circuit(sheet, network)
         self.samples = np.zeros(len(self._first), SUPPLY_SAMPLE) if samples is None else samples
         self._shown = self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE)))
-        places = list(sheet.by_name)
-        self._rows = [1 + places.index(own.place) for own in fed]
+        self._row_of = {name: 1 + k for k, name in enumerate(sheet.by_name)}
+        self._rows = [self._row_of[own.place] for own in fed]
         self.state: NDArray[np.float64] = at_rest(sheet, network)
         self._network, self._steps = network, 0
         self._work = np.zeros((WORK_ROWS, len(self.state)))
@@ -82,11 +84,13 @@ class Circuit:
         self._show()
 
     def _take(self, sheet: CircuitSupply) -> None:
-        network, self._steps = self._checked(sheet)
+        self._sheet, (network, self._steps) = sheet, self._checked(sheet)
         amounts = network.nodes['gas']['amount']
         np.minimum(amounts, self._network.nodes['gas']['amount'], out=amounts)
         self._network = network
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        if self._warmth is not None:
+            self._warmth.take(sheet, network)
 
     def _all_nodes(self) -> list[tuple[float, float, np.record]]:
         """Return content, temperature and record of every node."""
@@ -95,11 +99,15 @@ class Circuit:
                 for k in range(n)]
 
     def _checked(self, sheet: CircuitSupply) -> tuple[Network, int]:
-        network = network_of(sheet)
-        steps = steps_of(sheet, network, self._step, self._name)
+        stiffest = network_of(sheet, coldest_oil(sheet))
+        steps = steps_of(sheet, stiffest, self._step, self._name)
         for own, node in zip(self._fed, self._nodes):
-            self._refuse_small(own, network.nodes[node])
-        return network, steps
+            self._refuse_small(own, stiffest.nodes[node])
+        return stiffest if self._warmth is None else self._network_of(sheet), steps
+
+    def _network_of(self, sheet: CircuitSupply) -> Network:
+        """Return the network with its oil as warm as it is."""
+        return network_of(sheet, None if self._warmth is None else self._warmth.oil_now(sheet))
 
     def _refuse_small(self, fed: Fed, node: np.record) -> None:
         """Refuse a manifold whose oil, without an accumulator, is too small to feed  (C16)."""
@@ -169,8 +177,12 @@ class Circuit:
         self.state[2 * n:3 * n] = 0.0
         circuit_advance(self._steps, self._step / self._steps, flows, self._network.nodes,
                         self._network.elements, self.state, self._work)
-        self._account(drawn, paid, returned)
+        taken = self._account(drawn, paid, returned)
         self._held[:] = self._work[0, :n]
+        if self._warmth is not None and self._warmth.advance(
+                self._step, taken, self.state, self._network):
+            self.change(self._sheet)
+            return
         self._show()
 
     def advance_held(self, drawn: Sequence[float], returned: Sequence[float]) -> None:
@@ -181,8 +193,8 @@ class Circuit:
 
     def _account(
             self, drawn: Sequence[float], paid: Sequence[float],
-            returned: Sequence[float]) -> None:
-        """Add oil of the actuators, and their energy to their manifold and the whole."""
+            returned: Sequence[float]) -> float:
+        """Add oil and energy of the actuators to manifolds and the whole; return the energy."""
         n = len(self._network.nodes)
         means = self.state[2 * n:3 * n] / self._step
         whole, total = self.samples[0], 0.0
@@ -202,6 +214,7 @@ class Circuit:
                 sample['held_energy'] += energy - given
         whole['power'] = total / self._step
         whole['peak_power'] = max(whole['peak_power'], whole['power'])
+        return total
 
     def _show(self) -> None:
         network = self._network
@@ -209,11 +222,14 @@ class Circuit:
                       self._rates)
         show(self._first, self.state, self._rates, network.nodes, network.elements,
              self._is_return, self._stored, self._gas, self._oil, self._shown)
+        if self._warmth is not None:
+            self._warmth.show(self._row_of, self.samples)
 
     @property
     def saved_size(self) -> int:
-        """Return the bytes of a `snapshot`: state, oil of the actuators, gas that is left."""
-        return self.state.nbytes + self._oil.nbytes + self._held.nbytes
+        """Return the bytes of a `snapshot`: state, oil of actuators, gas that is left, heat."""
+        heat = 0 if self._warmth is None else len(self._warmth.snapshot())
+        return self.state.nbytes + self._oil.nbytes + self._held.nbytes + heat
 
     def snapshot(self) -> bytes:
         """
@@ -228,7 +244,8 @@ class Circuit:
         if not np.isfinite(self.state).all():
             raise RunError(f'{self._name}: its state is not finite, cannot be saved')
         amounts = self._network.nodes['gas']['amount']
-        return self.state.tobytes() + self._oil.tobytes() + amounts.tobytes()
+        heat = b'' if self._warmth is None else self._warmth.snapshot()
+        return self.state.tobytes() + self._oil.tobytes() + amounts.tobytes() + heat
 
     def refuse_snapshot(self, snapshot: bytes) -> None:
         """Refuse bytes that are not a `snapshot` of this circuit; raises `ConfigError`."""
@@ -241,7 +258,11 @@ class Circuit:
         size = len(self.state)
         self.state[:] = values[:size]
         self._oil[:] = values[size:size + self._oil.size].reshape(self._oil.shape)
-        self._network.nodes['gas']['amount'] = values[size + self._oil.size:]
+        heat_at = size + self._oil.size + len(self._held)
+        self._network.nodes['gas']['amount'] = values[size + self._oil.size:heat_at]
+        if self._warmth is not None:
+            self._warmth.restore(values[heat_at:])
+            self._take(self._sheet)
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
         saved = list(SUPPLY_STATE.names or ())
         samples = self.samples[saved].copy()

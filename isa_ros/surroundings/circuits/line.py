@@ -16,7 +16,7 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, name, nested, parameter, Parameters
 from isa_ros.core.units import LPM, MICRO, MILLI, MPA
-from isa_ros.surroundings.circuits.oil import Oil
+from isa_ros.surroundings.circuits.oil import OilNow
 from isa_ros.surroundings.circuits.orifice import SMOOTH
 import numpy as np
 
@@ -79,7 +79,7 @@ def _area(sheet: LinePart) -> float:
     return 0.25 * math.pi * bore * bore
 
 
-def capacity(sheet: LinePart, oil: Oil) -> float:
+def capacity(sheet: LinePart, oil: OilNow) -> float:
     """Return V (1/beta + 1/beta_wall) of a whole line, m3/Pa  (C49)."""
     wall = sheet.wall
     soft = 0.0
@@ -90,7 +90,7 @@ def capacity(sheet: LinePart, oil: Oil) -> float:
     return _area(sheet) * sheet.length_m * (1.0 / oil.bulk_modulus + soft)
 
 
-def lump_fields(sheet: LinePart, oil: Oil) -> tuple[float, float, float]:
+def lump_fields(sheet: LinePart, oil: OilNow) -> tuple[float, float, float]:
     """Return the fields of the `LINE` of one lump  (C48)."""
     area, bore, nu = _area(sheet), sheet.bore_mm * MILLI, oil.viscosity_mm2_s * MICRO
     length = sheet.length_m / sheet.lumps
@@ -103,7 +103,7 @@ def lump_fields(sheet: LinePart, oil: Oil) -> tuple[float, float, float]:
     return inertance, laminar, turbulent
 
 
-def tear_fields(sheet: LinePart, oil: Oil, c: float) -> tuple[float, ...]:
+def tear_fields(sheet: LinePart, oil: OilNow, c: float) -> tuple[float, ...]:
     """
     Return the fields of the `ORIFICE` of what leaks to the outside, from a node of ``c``, m3/Pa.
 

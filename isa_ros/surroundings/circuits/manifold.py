@@ -7,7 +7,8 @@ parts stand between manifolds and the tank. Equation C45.
 
 from dataclasses import dataclass
 
-from isa_ros.core.parameter import fault, name, parameter, Parameters
+from isa_ros.core.parameter import fault, name, nested, parameter, Parameters
+from isa_ros.surroundings.circuits.heat import NoneHeat, TankHeat
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,3 +29,4 @@ class TankPart(Parameters):
     pressure_mpa: float = parameter(
         'gauge, of a closed tank', 'MPa', absent=0.0, source='assumed, open', changeable=True,
         ge=0.0, le=2.0)
+    heat: TankHeat = nested(NoneHeat())

@@ -1,10 +1,13 @@
 """
-The oil of a circuit, the same in all its parts. Neglected: air in it, and its temperature.
+The oil of a circuit, the same in all its parts. Neglected: air in it.
 
-A tank with a cooler would keep its temperature: what the oil warms up is not simulated.
+Without heat (`isa_ros.surroundings.circuits.heat`) it stays as the section says; with it
+compressibility and viscosity follow its temperature by T1 and T2, from the section on. Its
+density does not.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from isa_ros.core.parameter import parameter, Parameters
 
@@ -21,3 +24,21 @@ class Oil(Parameters):
     viscosity_mm2_s: float = parameter(
         'kinematic', 'mm2/s', absent=32.0, source='assumed, ISO VG 32 at 40 celsius',
         ge=0.5, le=2000.0)
+
+
+class OilNow(NamedTuple):
+    """The oil of a circuit at a temperature; by default that of the section."""
+
+    bulk_modulus: float
+    """Effective, Pa."""
+    density: float
+    """kg/m3."""
+    viscosity_mm2_s: float
+    thickness: float = 1.0
+    """Viscosity over that of the section."""
+
+
+def oil_at_sheet(oil: Oil, thickness: float = 1.0, softness: float = 1.0) -> OilNow:
+    """Return the oil with its viscosity and its compressibility times these factors."""
+    return OilNow(oil.bulk_modulus / softness, oil.density, oil.viscosity_mm2_s * thickness,
+                  thickness)

@@ -11,6 +11,7 @@ from isa_ros.surroundings.circuits.manifold import ManifoldPart, TankPart
 from isa_ros.surroundings.circuits.network import (
     ELEMENT, OF_CHECK, OF_LINE, OF_ORIFICE, OF_PUMP, OF_RELIEF)
 from isa_ros.surroundings.circuits.nodes import NODE
+from isa_ros.surroundings.circuits.oil import oil_at_sheet, OilNow
 from isa_ros.surroundings.circuits.orifice import orifice_fields
 from isa_ros.surroundings.circuits.pump import pump_fields, PumpPart
 from isa_ros.surroundings.circuits.relief import filter_fields, FilterPart, relief_fields
@@ -50,8 +51,8 @@ class Network(NamedTuple):
 class _Drawing:
     """A network while it is drawn."""
 
-    def __init__(self, sheet: CircuitSupply) -> None:
-        self.sheet = sheet
+    def __init__(self, sheet: CircuitSupply, oil: OilNow) -> None:
+        self.sheet, self.oil = sheet, oil
         self.places: list[str] = ['']
         self.nodes: list[np.ndarray] = [_held(0.0)]
         self.owners: list[str] = []
@@ -74,12 +75,12 @@ class _Drawing:
         self.elements.append(element)
 
     def add_line(self, name: str, part: LinePart, inlet: int, outlet: int) -> None:
-        n, c = int(part.lumps), capacity(part, self.sheet.oil) / part.lumps
+        n, c = int(part.lumps), capacity(part, self.oil) / part.lumps
         for end in (inlet, outlet):
             self.nodes[end]['c'] += 0.5 * c
         ends = [inlet, *(self.add_node(name, c) for _ in range(n - 1)), outlet]
         for before, after in zip(ends, ends[1:]):
-            self.add(name, OF_LINE, before, after, 'line', lump_fields(part, self.sheet.oil))
+            self.add(name, OF_LINE, before, after, 'line', lump_fields(part, self.oil))
 
     def add_tear(self, name: str, part: LinePart) -> None:
         """Add where the wall of a line may tear: at its outlet, or the last node before a tank."""
@@ -90,7 +91,7 @@ class _Drawing:
             at = int(last['inlet'][0])
         c = float(self.nodes[at]['c'][0]) or 1.0      # of a line from tank to tank it is nothing
         self.add(name, OF_ORIFICE, at, OUTSIDE, 'orifice', tear_fields(
-            part, self.sheet.oil, c))
+            part, self.oil, c))
 
     def add_between(self, name: str, part: Between) -> None:
         """Add a part between two places."""
@@ -99,7 +100,8 @@ class _Drawing:
         if isinstance(part, LinePart):
             self.add_line(name, part, inlet, outlet)
         elif isinstance(part, PumpPart):
-            self.add(name, OF_PUMP, inlet, outlet, 'pump', pump_fields(part, has_current))
+            self.add(name, OF_PUMP, inlet, outlet, 'pump', pump_fields(
+                part, has_current, self.oil.thickness))
         elif isinstance(part, CheckPart):
             self.add(name, OF_CHECK, inlet, outlet, 'check', check_fields(part))
         elif isinstance(part, ReliefPart):
@@ -113,16 +115,17 @@ class _Drawing:
                      OUTSIDE if senses is None else self.places.index(senses))
 
 
-def network_of(sheet: CircuitSupply) -> Network:
-    """Return the network of a circuit."""
-    drawing = _Drawing(sheet)
+def network_of(sheet: CircuitSupply, oil: OilNow | None = None) -> Network:
+    """Return the network of a circuit with its oil at a temperature; None: as its section."""
+    oil = oil_at_sheet(sheet.oil) if oil is None else oil
+    drawing = _Drawing(sheet, oil)
     parts = sheet.by_name
     for name, part in parts.items():
         if isinstance(part, TankPart):
             drawing.places.append(name)
             drawing.nodes.append(_held(part.pressure_mpa * MPA))
         elif isinstance(part, ManifoldPart):
-            drawing.add_node(name, part.oil_volume_l * LITRE / sheet.oil.bulk_modulus)
+            drawing.add_node(name, part.oil_volume_l * LITRE / oil.bulk_modulus)
     for name, part in parts.items():
         if isinstance(part, Between):
             drawing.add_between(name, part)

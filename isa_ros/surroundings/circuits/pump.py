@@ -4,8 +4,8 @@ A pump with pressure compensator, displacement limit and power limit.
 Its swash plate follows with one lag; its largest displacement at its speed is its largest flow.
 Flow > 0 runs from its inlet to its outlet. Without current it delivers nothing. Equation C47.
 
-Neglected: its pulsation, the friction of its shaft, and whether its inlet can follow; its leakage
-goes back to the inlet.
+Neglected: its pulsation, and whether its inlet can follow; its leakage goes back to the inlet. The
+friction of its shaft heats the oil (T8), and changes nothing else.
 """
 
 from dataclasses import dataclass
@@ -51,6 +51,9 @@ class PumpPart(Parameters):
     leakage_lpm_per_mpa: float = parameter(
         'back to its inlet per pressure', 'l/min/MPa', absent=0.0, source='assumed', ge=0.0,
         le=10.0)
+    efficiency_percent: float = parameter(
+        'hydro-mechanical: power of its flow over that of its shaft; the rest heats the oil', '%',
+        absent=100.0, source='assumed, no friction', ge=10.0, le=100.0)
     stuck: float = fault('1: its displacement stays as it is', '1', is_whole=True, ge=0.0, le=1.0)
     worn_lpm_per_mpa: float = fault('more leakage', 'l/min/MPa', ge=0.0, le=100.0)
 
@@ -60,11 +63,13 @@ def largest_flow(sheet: PumpPart) -> float:
     return sheet.displacement_ml * MILLILITRE * sheet.speed_rpm * _PER_MINUTE
 
 
-def pump_fields(sheet: PumpPart, has_current: bool) -> tuple[float, ...]:
-    """Return the fields of the `PUMP` of a pump."""
+def pump_fields(
+        sheet: PumpPart, has_current: bool, thickness: float = 1.0) -> tuple[float, ...]:
+    """Return the fields of the `PUMP` of a pump, in oil that is ``thickness`` times as thick."""
     return (sheet.pressure_mpa * MPA, sheet.band_mpa * MPA, largest_flow(sheet) * has_current,
             sheet.power_w, sheet.lag_s,
-            (sheet.leakage_lpm_per_mpa + sheet.worn_lpm_per_mpa) * LPM / MPA, sheet.stuck)
+            (sheet.leakage_lpm_per_mpa + sheet.worn_lpm_per_mpa) * LPM / MPA / thickness,
+            sheet.stuck)
 
 
 @kernel

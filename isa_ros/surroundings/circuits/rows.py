@@ -10,6 +10,7 @@ a leak or a tear is a connection of the manifold that it is at. Equations E10 to
 
 from isa_ros.core.kernel import kernel
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart, gas_energy, ICE
+from isa_ros.surroundings.circuits.heat import CoolerPart
 from isa_ros.surroundings.circuits.line import LinePart
 from isa_ros.surroundings.circuits.network import (
     element_flow, OF_LINE, OF_ORIFICE, OF_PUMP, PER_NODE)
@@ -19,7 +20,7 @@ from isa_ros.surroundings.circuits.plan import Network
 from isa_ros.surroundings.circuits.sheet import Between, CircuitSupply
 import numpy as np
 
-OF_WHOLE, OF_PLACE, OF_GAS, OF_WAY = range(4)
+OF_WHOLE, OF_PLACE, OF_GAS, OF_WAY, OF_COOLER = range(5)
 
 ROW = np.dtype((np.record, [
     ('kind', 'i8'),
@@ -46,6 +47,8 @@ def rows_of_circuit(sheet: CircuitSupply, network: Network) -> np.ndarray:
         elif isinstance(part, AccumulatorPart):
             node = network.node(part.at)
             found.append((OF_GAS, node, node, 0, 0, -1, 0, 0))
+        elif isinstance(part, CoolerPart):
+            found.append((OF_COOLER, tank, tank, 0, 0, -1, 0, 0))
         else:
             node = network.node(name)
             found.append((OF_PLACE, node, network.node(sheet.return_of(name)),
@@ -110,6 +113,8 @@ def _show_place(row, state, rates, nodes, elements, sample):
     lost = 0.0
     for j in range(row.first, row.last):
         lost += state[PER_NODE * n + m + j]
+    if node.is_held <= 0.0 and node.gas.amount <= 0.0:
+        lost -= state[3 * n + i]    # of oil whose compressibility has changed
     sample.pump_flow = rates[i]
     sample.relief_energy = lost
     sample.stored_energy = stored

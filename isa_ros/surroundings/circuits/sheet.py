@@ -12,6 +12,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
 from isa_ros.surroundings.circuits.check import CheckPart
+from isa_ros.surroundings.circuits.heat import CoolerPart, NoneHeat, TankHeat
 from isa_ros.surroundings.circuits.line import LinePart
 from isa_ros.surroundings.circuits.manifold import ManifoldPart, TankPart
 from isa_ros.surroundings.circuits.oil import Oil
@@ -22,7 +23,7 @@ from isa_ros.surroundings.circuits.relief import FilterPart, ReliefPart
 from isa_ros.surroundings.return_line import HeldReturn, ReturnLine
 
 Part = (TankPart | ManifoldPart | PumpPart | AccumulatorPart | LinePart | ReliefPart | CheckPart
-        | FilterPart | UnloadingPart | BlockPart | DumpPart)
+        | FilterPart | UnloadingPart | BlockPart | DumpPart | CoolerPart)
 Between = (PumpPart | LinePart | ReliefPart | CheckPart | FilterPart | UnloadingPart | BlockPart
            | DumpPart)
 """Those with an inlet and an outlet."""
@@ -62,6 +63,11 @@ class CircuitSupply(Parameters):
     def tank(self) -> str:
         """Return the name of its tank."""
         return next(_named(self.by_name, TankPart))
+
+    @property
+    def heat(self) -> TankHeat:
+        """Return the heat of its tank."""
+        return next(part.heat for part in self.by_name.values() if isinstance(part, TankPart))
 
     @property
     def pressure_mpa(self) -> float:
@@ -141,6 +147,16 @@ def refuse_parts(parts: Mapping[str, Part]) -> None:
                 f'parts.{name}.returns_to = {name!r}, must be another manifold or the tank')
     _refuse_alone(parts, manifolds)
     _refuse_unfed(parts, manifolds)
+    _refuse_coolers(parts, tanks[0])
+
+
+def _refuse_coolers(parts: Mapping[str, Part], tank: str) -> None:
+    """Refuse a cooler of oil whose temperature stays as it is."""
+    own = parts[tank]
+    if isinstance(own, TankPart) and isinstance(own.heat, NoneHeat):
+        for name in _named(parts, CoolerPart):
+            raise ParameterError(
+                f'parts.{name}: the oil has no heat to give; parts.{tank}.heat.kind must be mixed')
 
 
 def _refuse_alone(parts: Mapping[str, Part], manifolds: list[str]) -> None:

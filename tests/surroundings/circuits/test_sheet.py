@@ -39,7 +39,7 @@ from tests.surroundings.circuits.test_circuit import STATION
     (SIMPLE + 'x: 3\n', 'station.yaml: parts.x = 3, must be a section'),
     (SIMPLE + 'mian: {oil_volume_l: 3.0}\n',
      'parts.mian lacks kind, one of tank, manifold, pump, accumulator, line, relief, check, '
-     'filter, unloading, block, dump; did you mean main?'),
+     'filter, unloading, block, dump, cooler; did you mean main?'),
     (SIMPLE + 'x: {kind: turbine}\n', "x.kind = 'turbine', must be one of tank, manifold"),
     (SIMPLE.replace('outlet: main', 'outlet: 3'), 'parts.pump.outlet = 3, must be a name'),
     (SIMPLE.replace('speed_rpm: 1500.0', 'speed_rpm: -1.0'),

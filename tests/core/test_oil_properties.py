@@ -2,9 +2,9 @@
 
 import math
 
-from isa_ros.errors import ParameterError
-from isa_ros.plant.oil_properties import (
+from isa_ros.core.oil_properties import (
     MineralOil, properties_record, softness, thickness, viscosity)
+from isa_ros.errors import ParameterError
 import numpy as np
 import pytest
 

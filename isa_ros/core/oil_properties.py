@@ -31,7 +31,7 @@ class MineralOil(Parameters):
     viscosity_at_100_cst: float = parameter(
         'kinematic viscosity at 100 celsius', 'mm2/s', ge=2.0, le=1000.0)
     compressibility_per_k: float = parameter(
-        'growth of the compressibility, of that at plant.oil.temperature_celsius', '1/K',
+        'growth of the compressibility, of that at the temperature of the sheet', '1/K',
         ge=0.0, le=0.008)
 
     def __post_init__(self) -> None:
