@@ -41,7 +41,7 @@ setup(
             'kernels/*.so',
             'py.typed', 'analysis/report/browser/*', 'config/data/*/*.yaml', 'export/sources/*',
             'export/fmi/sources/*', 'nodes/middleware/*.xml', 'paper/*.yaml', 'vendor/*.json',
-            'vendor/*/*'],
+            'vendor/*/*', 'view/browser/*'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[

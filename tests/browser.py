@@ -33,7 +33,11 @@ class Browser:
 
     def load(self, page: Path) -> None:
         """Load a file and wait until it is drawn."""
-        self._call('POST', '/url', {'url': page.resolve().as_uri()})
+        self.visit(page.resolve().as_uri())
+
+    def visit(self, address: str) -> None:
+        """Open an address and wait until its page is drawn."""
+        self._call('POST', '/url', {'url': address})
         self.wait('return document.body.dataset.ready !== undefined')
 
     def run(self, script: str, *arguments: Any) -> Any:

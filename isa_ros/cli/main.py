@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from isa_ros.cli import (
     bus_commands, commands, export_command, host_commands, measured_commands, response_arguments,
-    run_arguments, shared_arguments, talk)
+    run_arguments, shared_arguments, talk, view_command)
 from isa_ros.cli.completion.scripts import SHELLS
 from isa_ros.cli.shared_arguments import number
 from isa_ros.core.suggest import alternatives
@@ -250,6 +250,8 @@ _COMMANDS = {
     'recover': (_recover, commands.recover,
                 'complete a bag that was cut short, so that every reader opens it'),
     'report': (_report, commands.report, 'draw the figures of a bag on one page'),
+    'view': (view_command.arguments, view_command.view,
+             'play a bag in a browser, with its machine in 3D'),
     'bode': (response_arguments.bode, commands.bode,
              'measure the frequency response of a loop of an actuator'),
     'step': (response_arguments.step, commands.step,

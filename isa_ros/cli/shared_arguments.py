@@ -9,6 +9,7 @@ from pathlib import Path
 
 PNG = b'\x89PNG\r\n\x1a\n'
 """How a PNG file begins."""
+MOST_PORT = 65535
 
 
 def bag(parser: argparse.ArgumentParser, name: str = 'bag') -> None:
@@ -87,6 +88,14 @@ def _whole(text: str, least: int, bound: str) -> int:
         value = least - 1
     if value < least:
         raise argparse.ArgumentTypeError(f'{text!r} must be a whole number {bound}')
+    return value
+
+
+def port(text: str) -> int:
+    """Return a port of TCP; 0: any that is free."""
+    value = _whole(text, 0, f'from 0 to {MOST_PORT}')
+    if value > MOST_PORT:
+        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number from 0 to {MOST_PORT}')
     return value
 
 

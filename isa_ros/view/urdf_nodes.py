@@ -1,0 +1,139 @@
+"""
+The links of a URDF as nodes: https://wiki.ros.org/urdf/XML.
+
+Drawn are boxes, cylinders and spheres; a mesh is left out, since its file is not read.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+import math
+from typing import NamedTuple
+from xml.etree.ElementTree import Element
+
+from isa_ros.config.robots.urdf import turned
+from isa_ros.config.robots.urdf_text import element_of
+from isa_ros.errors import ConfigError
+from isa_ros.view.nodes import Floats, Motion, Node, Shape, WORLD
+import numpy as np
+
+_MOTIONS = {'revolute': Motion.TURN, 'continuous': Motion.TURN, 'prismatic': Motion.SLIDE}
+_SIZES = {'box': ('size', 3), 'cylinder': ('radius length', 2), 'sphere': ('radius', 1)}
+
+
+class Moved(NamedTuple):
+    """What moves the joints of a URDF."""
+
+    joints: Mapping[str, str]
+    """Channel of each joint by name; one without a channel rests at 0."""
+    root: Sequence[str]
+    """Channels of the pose of a free root; empty: it stands still."""
+    place: Floats
+    """Of its world in that of the page, m, (3,)."""
+
+
+def urdf_nodes(text: str, name: str, moved: Moved, first: int) -> list[Node]:
+    """
+    Return the nodes of a URDF, of which the root is the ``first`` in the list of all.
+
+    Raises
+    ------
+    ConfigError
+        It is not a URDF of one tree, or a number is not finite; the message begins with ``name``.
+
+    """
+    top = element_of(text, name)
+    links = {link.get('name', ''): link for link in top.iterfind('link')}
+    by_parent: dict[str, list[Element]] = {}
+    children: set[str] = set()
+    for joint in top.iterfind('joint'):
+        child = _end(joint, 'child')
+        if child in children:
+            raise ConfigError(f'{name}: {child} is the child of two joints, must be of one')
+        by_parent.setdefault(_end(joint, 'parent'), []).append(joint)
+        children.add(child)
+    roots = [link for link in links if link not in children]
+    if len(roots) != 1:
+        raise ConfigError(f'{name}: has {len(roots)} links without a parent, must have one')
+    found = [Node(roots[0], WORLD, moved.place, np.eye(3), ())]
+    if moved.root:
+        found.append(Node(roots[0], first, np.zeros(3), np.eye(3), (), Motion.FREE,
+                          channels=moved.root))
+    _add(found, links, by_parent, moved, first, name)
+    return found
+
+
+def _add(found: list[Node], links: Mapping[str, Element], by_parent: Mapping[str, list[Element]],
+         moved: Moved, first: int, name: str) -> None:
+    """Add the links below the last node, and its own shapes."""
+    waiting = [len(found) - 1]
+    while waiting:
+        at = waiting.pop()
+        node = found[at]
+        link = links.get(node.name)
+        if link is None:
+            raise ConfigError(f'{name}: {node.name} is the child of a joint, and not a link')
+        found[at] = node._replace(shapes=[*_shapes(link, f'{name}: link {node.name}')])
+        for joint in by_parent.get(node.name, ()):
+            where = f'{name}: joint {joint.get("name", "")}'
+            place, rotation = _origin(joint, where)
+            motion, axis, channels = _motion(joint, moved, where)
+            found.append(Node(_end(joint, 'child'), first + at, place, rotation, (), motion,
+                              axis, channels))
+            waiting.append(len(found) - 1)
+
+
+def _end(joint: Element, side: str) -> str:
+    found = joint.find(side)
+    return '' if found is None else found.get('link', '')
+
+
+def _motion(
+        joint: Element, moved: Moved, where: str
+        ) -> tuple[Motion, Sequence[float], Sequence[str]]:
+    """Return how a joint moves, its axis of length 1, and its channels."""
+    motion = _MOTIONS.get(joint.get('type', ''), Motion.FIXED)
+    channel = moved.joints.get(joint.get('name', ''))
+    if motion is Motion.FIXED or channel is None:
+        return Motion.FIXED, (0.0, 0.0, 1.0), ()
+    given = joint.find('axis')
+    axis = [1.0, 0.0, 0.0] if given is None else _numbers(given, 'xyz', 3, where)
+    length = math.sqrt(sum(x * x for x in axis))
+    if length == 0.0:
+        raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
+    return motion, [x / length for x in axis], (channel,)
+
+
+def _shapes(link: Element, where: str) -> Iterator[Shape]:
+    for visual in link.iterfind('visual'):
+        geometry = visual.find('geometry')
+        for own in () if geometry is None else geometry:
+            if own.tag not in _SIZES:
+                continue
+            keys, n = _SIZES[own.tag]
+            words = keys.split()
+            size = _numbers(own, words[0], n, where) if len(words) == 1 else [
+                _numbers(own, word, 1, where)[0] for word in words]
+            place, rotation = _origin(visual, where)
+            yield Shape(own.tag, size, place, rotation)
+
+
+def _origin(element: Element, where: str) -> tuple[Floats, Floats]:
+    """Return place, (3,), and rotation, (3, 3), of the ``<origin>`` below an element."""
+    found = element.find('origin')
+    if found is None:
+        return np.zeros(3), np.eye(3)
+    return (np.array(_numbers(found, 'xyz', 3, where)),
+            turned(*_numbers(found, 'rpy', 3, where)))
+
+
+def _numbers(element: Element, key: str, n: int, where: str) -> list[float]:
+    """Return n finite numbers of an attribute; zeros if there is none."""
+    text = element.get(key)
+    if text is None:
+        return [0.0] * n
+    try:
+        found = [float(word) for word in text.split()]
+    except ValueError:
+        found = []
+    if len(found) != n or not all(map(math.isfinite, found)):
+        raise ConfigError(f'{where}: {key} = {text!r}, must be {n} finite numbers')
+    return found

@@ -1,0 +1,76 @@
+"""The scene of a run: every leg, robot and lone actuator, with what moves it."""
+
+from pathlib import Path
+
+import isa_ros
+from isa_ros.view.nodes import Motion
+from isa_ros.view.scene import scene_of
+import pytest
+
+FOLDER = Path(__file__).parents[2] / 'config'
+
+
+def scene(name, folder=FOLDER):
+    return scene_of(isa_ros.load(name).configuration, folder)
+
+
+def test_a_leg_is_moved_by_its_joints_and_its_slider():
+    nodes = scene('leg')
+    moved = {node.name: node.channels for node in nodes if node.motion is not Motion.FIXED}
+    assert moved == {'slider_link': ('body.height',), 'hip': ('body.position[0]',),
+                     'thigh': ('body.position[1]',), 'calf': ('body.position[2]',)}
+    assert {node.name for node in nodes if node.shapes} == {
+        'slider_link', 'hip', 'thigh', 'calf'}
+
+
+def test_a_free_robot_moves_as_its_odometry_says():
+    nodes = scene('quadruped')
+    free, = (node for node in nodes if node.motion is Motion.FREE)
+    assert free.name == 'trunk' and list(free.channels) == [
+        *(f'body.position[{k}]' for k in range(3)),
+        *(f'body.orientation[{k}]' for k in range(4))]
+    assert sum(node.motion is Motion.TURN for node in nodes) == 12
+
+
+@pytest.mark.parametrize('name', ['crane', 'two_joint_leg', 'hyq_quadruped', 'hyq_leg'])
+def test_parents_stand_before_their_children(name):
+    nodes = scene(name)
+    assert all(node.parent < k for k, node in enumerate(nodes))
+    assert sum(len(node.shapes) for node in nodes) >= 4
+
+
+def test_lone_actuators_stand_side_by_side():
+    """A cylinder moves its rod along x, a rotor lifts its arm."""
+    nodes = scene('press')
+    barrel, rod = nodes
+    assert (rod.motion, rod.axis, rod.channels) == (
+        Motion.SLIDE, (1.0, 0.0, 0.0), ['slide.position'])
+    stroke = isa_ros.load('press').configuration.actuators[0].sheet.plant.drive.stroke
+    assert rod.reach == stroke == 0.25
+    assert barrel.shapes[0].size[1] == pytest.approx(1.1 * stroke) and barrel.place[2] > 0.0
+    # the eye is outside of the barrel over the whole stroke, the rod inside with its other end
+    end = rod.shapes[0].place[0] - 0.5 * rod.shapes[0].size[1] + stroke
+    assert 0.0 < end < 1.1 * stroke < rod.shapes[1].place[0]
+    arm = scene('rig_rotary')[1]
+    assert (arm.motion, arm.axis, arm.channels) == (
+        Motion.TURN, (0.0, -1.0, 0.0), ['rotor.position'])
+
+
+def test_robots_stand_apart():
+    run = isa_ros.load({'name': 'pair', 'robots': {
+        'r1': {'file': 'leg'}, 'r2': {'file': 'two_joint_leg'}}}).configuration
+    nodes = scene_of(run, FOLDER)
+    assert [node.place.tolist() for node in nodes if node.parent < 0] == [
+        [0.0, 0.0, 0.0], [0.0, 1.5, 0.0]]
+    channels = [name for node in nodes for name in node.channels]
+    assert 'r1.position[2]' in channels and 'r2.knee_position' in channels
+
+
+def test_a_robot_whose_urdf_is_elsewhere_is_shown_by_its_actuators(tmp_path, monkeypatch):
+    """Also where a file of that name is none."""
+    run = isa_ros.load('crane').configuration
+    (tmp_path / 'crane.urdf').write_text('no URDF')
+    nodes = scene_of(run, tmp_path)
+    assert [name for node in nodes for name in node.channels] == [
+        'lift.position', 'tilt.position']
+    assert nodes[0].place[1] < nodes[2].place[1]
