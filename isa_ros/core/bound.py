@@ -74,7 +74,8 @@ def _with_attributes(memory: Any) -> Any:
     parts = [_with_attributes(part) if isinstance(part, tuple)
              else part if part.dtype.names is None else np.asarray(part.view(np.recarray))
              for part in memory]
-    return type(memory)(*parts)
+    form = type(memory)
+    return tuple(parts) if form is tuple else form(*parts)
 
 
 class Rounds(NamedTuple):

@@ -12,6 +12,7 @@ from isa_ros.bag.message_chunk import Chunk, Layouts
 from isa_ros.config.assembly import bodies_in_form, group_of, surroundings_in_form
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_reading import run_of_text
+from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.output import packer_of
@@ -29,7 +30,8 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     External bodies only have their form in it: each is made once, by the run itself. If the copy
     diverges, so will the run, which reports it and records the ticks before.
     """
-    if run.bodies and not tick_kernel().is_kept() and len(os.sched_getaffinity(0)) > 1:
+    if IS_COMPILED and run.bodies and len(os.sched_getaffinity(0)) > 1 \
+            and not tick_kernel().is_kept():
         _compile_by_two(run)
     simulation = Simulation(idle(run), (), bodies_in_form(run))
     with suppress(SimulationDiverged):

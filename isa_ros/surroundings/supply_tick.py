@@ -12,7 +12,7 @@ import numpy as np
 
 IDEAL = np.dtype([
     ('pressure_mpa', 'f8'), ('return_mpa', 'f8'),
-    ('dump', DUMP)])            # acts over a tick
+    ('dump_valve', DUMP)])      # acts over a tick
 """An ideal supply."""
 
 
@@ -126,7 +126,7 @@ def add_oil(drawn, returned, paid, seconds, state):
 @kernel
 def lower(ideal, state):
     """Let the dump of an ideal supply act over a tick  (C14)."""
-    dump = ideal.dump
+    dump = ideal.dump_valve
     if dump.is_there > 0.0 and state.dump_opening != dump.is_open:
         state.dump_opening = opened_after(state.dump_opening, dump.left, dump)
         state.pressure = held_pressure(state.dump_opening, ideal)
