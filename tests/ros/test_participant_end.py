@@ -1,6 +1,5 @@
 """Whose run an actuator takes part in, and what it looks at before a tick."""
 
-from collections.abc import Iterator
 from types import SimpleNamespace
 
 from isa_ros.core.signals import START
@@ -8,19 +7,9 @@ from isa_ros.run.wire.answers import AnswerKind
 from isa_ros.run.wire.steps import encode_hello
 import numpy as np
 import pytest
-from rclpy.node import Node
-from tests.ros.test_lockstep_strangers import done, Participant, Post, ROSTER, RUN, tick
+from tests.ros.lone_participant import done, Post, ROSTER, RUN, tick
 
 pytestmark = pytest.mark.ros
-
-
-@pytest.fixture
-def member(observer: Node) -> Iterator[Participant]:
-    """Return a participant in a run that has begun."""
-    node = Node('kfe', context=observer.context, enable_rosout=False,
-                start_parameter_services=False)
-    yield Participant(node)
-    node.destroy_node()
 
 
 @pytest.mark.parametrize(('n_coordinators', 'expected'), [
