@@ -7,7 +7,7 @@ A block is named by its first line.
 from typing import NamedTuple
 
 ROS2 = "the program ros2 is not among the wheels; tests/ros/test_terminal.py has isa's own"
-ENDLESS = 'runs until Ctrl-C, or in two terminals; tests/ros and tests/examples start and end it'
+ENDLESS = 'runs until Ctrl-C, or in two terminals; tests of the command start and end it'
 ROOT = 'changes the host, needs root or a namespace of its own; tests/fieldbus has both'
 HOSTS = 'needs a second host; tests/ros/hosts.py makes two of network namespaces'
 MINUTES = 'takes minutes and writes the page; tests compare the page with a part of it'
@@ -135,6 +135,7 @@ NOT_RUN = {
     'temperature': {'./isa study temperature --out docs': MINUTES},
     'time': {'./isa bringup leg.yaml --paused': ROS2},
     'validation': {'./isa validate --out docs': MINUTES},
+    'view': {'./isa view leg --scenario drop': ENDLESS},
     'versions': {'git worktree add ../isa_ros-0.2.0 0.2.0 && ../isa_ros-0.2.0/isa replay BAG':
                  INSTALLS}}
 """By page and first line: why the blocks of a test leave it out."""
