@@ -144,6 +144,14 @@ def test_a_result_whose_bag_would_lack_something_is_not_saved(drop, tmp_path, re
     assert not (tmp_path / 'bag').exists()
 
 
+def test_a_result_is_saved_without_what_is_left_out(drop, tmp_path):
+    from isa_ros.bag.reader import Bag
+    thinned = drop.replace({'record': {'leave_out': ['/*/references', '/clock']}})
+    topics = set(Bag(thinned.simulate().save(tmp_path / 'bag')).types)
+    assert '/kfe/valve' in topics
+    assert not topics & {'/clock', '/haa/references', '/kfe/references'}
+
+
 class Push(Controller):
     """Asks the knee for another place at every tick."""
 
