@@ -6,7 +6,7 @@ range, takes effect at the next tick, and is in the bag with it. A command of a 
 same tick wins.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import SmartActuator
@@ -38,6 +38,8 @@ _SHOWN = {'m': ('mm', MILLI), 'rad': ('deg', float(np.radians(1.0))), 'A': ('mA'
 """Unit of a slider, and what it is in SI, by unit of the setpoint."""
 _GAIN_RANGE = 4.0
 """Largest value of a gain's slider over the value at the start."""
+_STEPS = 1000
+"""Of a slider: so far its ends are within bounds that a value must not reach."""
 _ENDLESS = 6.283185307179586    # rad, either way, of the slider of a motor
 
 
@@ -172,7 +174,7 @@ def _slider(
         high = min(high, gain_range * value)
     if bounds.what.endswith(' turns'):
         low, high = value - _ENDLESS, value + _ENDLESS
-    return Slider(name, unit, scale, low / scale, high / scale, value / scale)
+    return Slider(name, unit, scale, float(low / scale), float(high / scale), value / scale)
 
 
 def _gains(actuator: SmartActuator) -> Iterator[Slider]:
@@ -184,13 +186,16 @@ def _gains(actuator: SmartActuator) -> Iterator[Slider]:
             yield Slider(own.key, own.unit, 1.0, low, high, own.value)
 
 
-def _range(own: Changeable) -> Sequence[float]:
+def _range(own: Changeable) -> tuple[float, float]:
     """Return the range of a slider: from 0 to some times the value, within its bounds."""
-    low, high = (max((own.bounds[key] for key in keys if key in own.bounds), default=end)
-                 for keys, end in ((('ge', 'gt'), 0.0), (('le', 'lt'), 1.0)))
+    bounds = own.bounds
+    low = bounds.get('ge', bounds.get('gt', 0.0))
+    high = bounds.get('le', bounds.get('lt', 1.0))
     if own.value > 0.0:
-        return max(low, 0.0), min(high, _GAIN_RANGE * own.value)
-    return low, high
+        low, high = max(low, 0.0), min(high, _GAIN_RANGE * own.value)
+    step = (high - low) / _STEPS
+    is_low, is_high = low == bounds.get('gt'), high == bounds.get('lt')
+    return low + is_low * step, high - is_high * step
 
 
 def _request(actuator: SmartActuator, name: str) -> str:

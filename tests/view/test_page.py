@@ -1,7 +1,7 @@
 """The page in a browser: a bag plays, a run is changed, and no markup becomes script."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from queue import Queue
 import re
@@ -11,6 +11,7 @@ import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.replay.replay import replay
+from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.session import prepare
 from isa_ros.scripting.result import Result
@@ -212,8 +213,11 @@ def lived(out: Path, **more: object) -> Iterator[tuple[str, Callable[[], None]]]
     session = prepare(Request(**given))
     told: 'Queue[str]' = Queue()
     ended = threading.Event()
-    thread = threading.Thread(target=view_run, args=(
-        session, 0, Path(), told.put, None, ended.is_set))
+
+    def run() -> None:
+        with suppress(Interrupted):
+            view_run(session, 0, Path(), told.put, None, ended.is_set)
+    thread = threading.Thread(target=run)
     thread.start()
     try:
         yield told.get(timeout=120.0), thread.join
