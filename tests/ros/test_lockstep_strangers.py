@@ -14,7 +14,8 @@ from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import (
-    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick)
+    encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
+    encode_tick)
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
@@ -77,6 +78,7 @@ ODD_STEPS = {
     'another version': altered(tick(0), KIND - 2, b'\x63'),
     'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER)[:-9],
     'a begin of others': encode_begin(RUN, [b'another']),
+    'a change of others': encode_change(RUN, -1, {}, 1),
     'a save of others': encode_restore(RUN, -1, 5, [b'after 5']),
     'a tick of one actuator': encode_tick(RUN, 0, Rows(1, Outside(False)), has_controllers=False)}
 
