@@ -2,11 +2,16 @@
 
 from pathlib import Path
 import re
+import sys
 
 from setuptools import find_packages, setup
 
 NAME = 'isa_ros'
 ROOT = Path(__file__).parent
+
+# setup.cfg puts console scripts where `ros2 run` looks; colcon adds PREFIX/bin to PATH. A wheel
+# has an `isa` of its entry point, over which some installers would put this one.
+IN_A_WORKSPACE = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/isa'])]
 
 
 def shared(directory: str, pattern: str) -> tuple[str, list[str]]:
@@ -47,8 +52,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
-        # setup.cfg puts console scripts where `ros2 run` looks; colcon adds PREFIX/bin to PATH.
-        ('bin', ['bin/isa']),
+        *IN_A_WORKSPACE,
         shared('config', '*.yaml'),
         shared('config/bad', '*.yaml'),
         shared('config/controllers', '*.yaml'),
@@ -71,8 +75,9 @@ setup(
         'scipy>=1.11',
         'zstandard>=0.19',
     ],
-    extras_require={
+    extras_require={    # one a door to other programs, in docs/installing.md
         'canopen': ['canopen>=2.3', 'msgpack>=1.0', 'python-can>=4.3'],
+        'ethercat': ['pysoem>=1.1'],    # the master of isa_ros.examples.ethercat_master
         'mujoco': ['mujoco>=3.2'],  # another simulator as the body of a run
         'pinocchio': ['pin>=3.0'],  # of the example isa_ros.examples.pinocchio_crane
         'test': ['hypothesis', 'pytest']},

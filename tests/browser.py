@@ -35,11 +35,9 @@ class Browser:
         """Load a file and wait until it is drawn."""
         self.visit(page.resolve().as_uri())
 
-    def visit(self, address: str, *, is_drawn: bool = True) -> None:
-        """Open an address and wait until its page is drawn, if it is one of ours."""
+    def visit(self, address: str) -> None:
+        """Open an address and wait until its page is drawn."""
         self._call('POST', '/url', {'url': address})
-        if not is_drawn:
-            return
         self.wait('return document.body.dataset.ready !== undefined')
 
     def run(self, script: str, *arguments: Any) -> Any:

@@ -6,7 +6,9 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 from xml.etree import ElementTree
+import zipfile
 
 import isa_ros
 from isa_ros.cli.main import main
@@ -14,9 +16,15 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 import pytest
 from scripts import pin_requirements
+from scripts.check_environments import DOORS
+from scripts.environments.environment import needed
+from scripts.environments.interpreters import PYTHONS
+import yaml
 
 ROOT = Path(__file__).parents[1]
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
+KEYS = {'pillow': 'python3-pil', 'PyYAML': 'python3-yaml'}
+"""Keys of rosdep that are not the name of the package."""
 ENTRY_POINTS = re.findall(r"'(\w+) = ([\w.]+):(\w+)'", SETUP)
 
 
@@ -122,6 +130,114 @@ def copy_of_clone(tmp_path: Path) -> Path:
         if (ROOT / name).is_file():
             shutil.copy(ROOT / name, copy / name)
     return copy
+
+
+def built(command: str, copy: Path) -> Path:
+    """Return what a command of setup.py, as pip gives it, makes of a copy of the clone."""
+    subprocess.run(
+        [sys.executable, 'setup.py', '--quiet', command, '--dist-dir', 'made'], cwd=copy,
+        check=True, capture_output=True, timeout=120)
+    made, = (copy / 'made').iterdir()
+    return made
+
+
+SHARED = ('config', 'launch', 'layouts', 'rviz', 'urdf')
+
+
+@pytest.mark.slow
+def test_a_wheel_has_the_share_and_no_command_but_that_of_its_entry_point(tmp_path: Path) -> None:
+    """An installer may put a file `bin/isa` over the one with the interpreter."""
+    pytest.importorskip('setuptools', minversion='70.1')
+    wheel = built('bdist_wheel', copy_of_clone(tmp_path))
+    with zipfile.ZipFile(wheel) as archive:
+        names = archive.namelist()
+        metadata = archive.read(next(
+            name for name in names if name.endswith('dist-info/METADATA'))).decode()
+    data = f'isa_ros-{isa_ros.__version__}.data/data/'
+    inside = {name.removeprefix(data) for name in names if name.startswith(data)}
+    assert {name.removeprefix('share/isa_ros/') for name in inside} >= set(shared())
+    assert [name for name in inside if not name.startswith('share/')] == []
+    assert set(re.findall('^Provides-Extra: (.+)$', metadata, re.MULTILINE)) == {
+        *DOORS, 'test'}
+    assert set(needed(wheel, 'canopen')) == {'canopen>=2.3', 'msgpack>=1.0', 'python-can>=4.3'}
+
+
+@pytest.mark.slow
+def test_a_source_archive_has_all_that_a_wheel_is_made_of(tmp_path: Path) -> None:
+    archive = built('sdist', copy_of_clone(tmp_path))
+    with tarfile.open(archive) as file:
+        names = {name.partition('/')[2] for name in file.getnames()}
+    assert names >= {*shared(), 'bin/isa', 'setup.py', 'setup.cfg', 'pyproject.toml', 'LICENSE',
+                     'README.md', 'package.xml', 'resource/isa_ros', 'isa_ros/py.typed',
+                     'isa_ros/vendor/uplot/LICENSE', 'msg_adapters/cdr.py'}
+
+
+def shared() -> list[str]:
+    """Return the files below share/isa_ros, whose folders are those of the checkout."""
+    return [str(path.relative_to(ROOT)) for folder in SHARED
+            for path in sorted((ROOT / folder).rglob('*.*')) if '__pycache__' not in path.parts]
+
+
+def depended() -> set[str]:
+    """Return the names that package.xml depends on, to run or to test."""
+    root = ElementTree.parse(ROOT / 'package.xml').getroot()
+    return {str(element.text) for tag in ('exec_depend', 'test_depend', 'depend', 'build_depend')
+            for element in root.iter(tag)}
+
+
+def test_what_setup_needs_has_a_key_of_rosdep_or_is_told() -> None:
+    """A key of pip would stop `rosdep install` on Ubuntu 24.04."""
+    needs = re.search(r'install_requires=\[(.*?)\]', SETUP, re.DOTALL)[1]
+    names = set(re.findall(r"'(\w+)>=", needs))
+    keys = {KEYS.get(name, f'python3-{name.lower()}'): name for name in names}
+    without = {name for key, name in keys.items() if key not in depended()}
+    assert without == {'lz4', 'mcap', 'zstandard'}
+    page = (ROOT / 'docs' / 'installing.md').read_text(encoding='utf-8')
+    assert 'apt install python3-lz4 python3-zstandard' in page and ' mcap ' in page
+    assert [key for key in depended() if 'pip' in key] == []
+
+
+def test_packages_of_ros_that_are_imported_are_depended_on() -> None:
+    imported = {found[1] for folder in ('isa_ros', 'msg_adapters', 'launch')
+                for path in (ROOT / folder).rglob('*.py')
+                for found in re.finditer(
+                    r'^\s*(?:from|import) (\w+)', path.read_text(), re.MULTILINE)}
+    ros = {name for name in imported if name.endswith(('_msgs', '_interfaces')) or name in (
+        'rclpy', 'launch', 'launch_ros', 'ament_index_python')}
+    assert len(ros) > 10 and ros <= depended()
+
+
+def test_an_extra_is_named_on_the_page_with_its_packages() -> None:
+    page = (ROOT / 'docs' / 'installing.md').read_text(encoding='utf-8')
+    rows = dict(re.findall(r'^\| `(\w+)` \| ([\w, -]+) \|', page, re.MULTILINE))
+    declared = re.search(r'extras_require=\{(.*?)\},\n', SETUP, re.DOTALL)[1]
+    extras = dict(re.findall(r"'(\w+)': \[(.*?)\]", declared))
+    assert set(rows) == set(extras) - {'test'} == set(DOORS)
+    for name, packages in rows.items():
+        assert sorted(packages.split(', ')) == sorted(
+            re.findall(r"'([\w-]+)>=", extras[name])), name
+
+
+@pytest.mark.parametrize('name', ['apt', 'wheels'])
+def test_a_workflow_runs_what_is_there(name: str) -> None:
+    text = (ROOT / '.github' / 'workflows' / f'{name}.yml').read_text(encoding='utf-8')
+    jobs = yaml.safe_load(text)['jobs']
+    assert all(job['steps'] and job['timeout-minutes'] for job in jobs.values())
+    scripts = re.findall(r'python -m (scripts\.\w+)', text)
+    assert all((ROOT / f'{script.replace(".", "/")}.py').is_file() for script in scripts)
+    for path in re.findall(r'(?:tests|\.ci)/[\w/]+', text):
+        assert (ROOT / path).exists(), path
+    assert set(re.findall(r'isa (\w+) ', text)) <= {'bringup', 'replay'}
+    if name == 'wheels':
+        assert jobs['environments']['strategy']['matrix']['python'] == list(PYTHONS)
+
+
+def test_the_image_is_made_of_the_clone_and_of_what_the_page_installs() -> None:
+    text = (ROOT / 'Dockerfile').read_text(encoding='utf-8')
+    assert re.findall(r'^FROM (.+)$', text, re.MULTILINE) == ['ros:jazzy-ros-base']
+    for part in ('python3-lz4', 'python3-zstandard', ' mcap', 'rosdep install', 'colcon build',
+                 'COPY . src/isa_ros'):
+        assert text.count(part) == 1, part
 
 
 @pytest.mark.parametrize('python', pin_requirements.PYTHONS)

@@ -12,6 +12,10 @@ COLOURS = (
     MEASURED, REFERENCE, SECOND, '#d62728', '#9467bd', '#8c564b', '#e377c2', '#7f7f7f', '#bcbd22',
     '#17becf', '#393b79', '#637939')
 
+SUPPLIES = (('pressure', 'fluid_pressure', 'supply, Pa'),
+            ('temperature', 'temperature', 'supply, degrees Celsius'))
+"""End of a signal's name, its field, and what its diagram is called."""
+
 
 class Curve(NamedTuple):
     """One number of the messages of a topic."""
@@ -42,15 +46,15 @@ class Page(NamedTuple):
 
 def pages_of(run: RunConfig) -> list[Page]:
     """Return a page for all bodies and supplies, if it has any diagram, and one an actuator."""
-    supplies = [
-        _plain(supply_topic(name, signal), 'fluid_pressure', f'{name} {signal}', k)
-        for k, (name, signal) in enumerate(
-            (name, signal) for name, signals in run.sampled_supplies for signal in signals
-            if signal.endswith('pressure'))]
     whole = [diagram for body in run.bodies
              for diagram in _of_body(body.messages(run.step_ns))]
-    if supplies:
-        whole.append(Diagram('supply, Pa', supplies))
+    for kind, field, title in SUPPLIES:
+        found = [(name, signal) for name, signals in run.sampled_supplies for signal in signals
+                 if signal.endswith(kind)]
+        if found:
+            whole.append(Diagram(title, [
+                _plain(supply_topic(name, signal), field, f'{name} {signal}', k)
+                for k, (name, signal) in enumerate(found)]))
     return [*([Page('machine', whole)] if whole else ()),
             *(_of_actuator(own.name, own.sheet.is_rotary) for own in run.actuators)]
 

@@ -13,7 +13,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.paths import CONFIG, find, SCENARIOS, shipped
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.run.local_run import LocalRun
 from isa_ros.run.provenance import provenance_of
@@ -213,11 +213,23 @@ def test_a_run_of_ones_own_has_layouts(tmp_path: Path) -> None:
 
 def test_several_supplies_have_colours_of_their_own() -> None:
     page = pages_of(load_run(find('pump_station', CONFIG)))[0]
-    curves = page.diagrams[-1].curves
+    curves = next(own for own in page.diagrams if own.title == 'supply, Pa').curves
     assert len(curves) > 2 and len({curve.colour for curve in curves}) == len(curves)
     root = ElementTree.fromstring(plotjuggler.text([page], 3))
-    assert [curve.get('color') for curve in root.iter('curve')][-2:] == [
-        curve.colour for curve in curves[-2:]]
+    assert {curve.colour for curve in curves} <= {
+        curve.get('color') for curve in root.iter('curve')}
+
+
+def test_pressures_and_temperatures_have_diagrams_of_their_own() -> None:
+    found = set()
+    for path in shipped(CONFIG).values():
+        for diagram in pages_of(load_run(path))[0].diagrams:
+            if diagram.title.startswith('supply'):
+                for curve in diagram.curves:
+                    kind = curve.topic.rpartition('_')[2]
+                    found.add((diagram.title, kind, curve.path))
+    assert found == {('supply, Pa', 'pressure', 'fluid_pressure'),
+                     ('supply, degrees Celsius', 'temperature', 'temperature')}
 
 
 @pytest.mark.parametrize('arguments, line, code', [
