@@ -86,11 +86,11 @@ def test_wrong_usage_is_one_line_and_2(
 
 
 @pytest.mark.parametrize('arguments, expected', [
-    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: crane.yaml, crane_circuit.yaml'),
+    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: cooled_station.yaml, crane.yaml'),
     (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is not a preset of isa_v5"),
-    (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: crane.yaml'),
+    (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: cooled_station.yaml'),
     (['bringup', 'leg', '--scenario', 'fly'],
-     'isa: fly: no such file; shipped: crane_circuit.yaml, current_step.yaml'),
+     'isa: fly: no such file; shipped: cooled_station.yaml, crane_circuit.yaml'),
     (['bringup', 'leg', '--scenario', 'step'],
      'isa: step.yaml: loads.rotor is unknown: leg.yaml: no actuator'),
     (['bringup', 'leg', '--duration', '0.0005'],

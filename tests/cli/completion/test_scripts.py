@@ -98,7 +98,7 @@ def test_an_option_has_its_own_command_and_values() -> None:
     assert options['--profile'].is_closed and options['--profile'].values == ('cia402', 'cia408')
     assert not options['--scenario'].is_closed and 'drop' in options['--scenario'].values
     assert not options['--no-ros'].takes_value and options['--no-ros'].meaning.startswith('no n')
-    assert by_path['bringup',].first_words[0] == 'crane'
+    assert by_path['bringup',].first_words[0] == 'cooled_station'
     assert '(default' not in options['--pace'].meaning
 
 
