@@ -1,4 +1,4 @@
-"""Which machine code the runs of a configuration ask for: a rehearsal in which no kernel runs."""
+"""Which machine code the runs of a configuration ask for: a rehearsal in which no tick runs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -10,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import isa_ros
 from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
@@ -20,7 +21,6 @@ from isa_ros.core.kernel import Entry
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.kinds import Kind
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.value_text import UnknownValue
 from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
 from isa_ros.run.warm_up import warmed_up
@@ -28,6 +28,7 @@ from isa_ros.run.wire.answer_loop import AnswerLoop
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.tick.source import ScheduledSource
+from scripts.kernel_objects import Objects
 
 ALONE = 'actuators alone'
 """The rehearsal of every model without a run."""
@@ -63,14 +64,19 @@ class _Nowhere:
         """Do nothing."""
 
 
+def tick() -> Wanted:
+    """Return the tick of the actuators."""
+    return _wanted(tick_kernel())
+
+
 def rehearsals() -> list[str]:
     """Return the names of all rehearsals."""
     return [ALONE, *shipped(CONFIG)]
 
 
-def rehearse(name: str) -> list[Wanted]:
-    """Return the entries that runs of a configuration ask for."""
-    with _noted() as found:
+def rehearse(name: str, objects: Objects) -> list[Wanted]:
+    """Return the entries that runs of a configuration ask for; objects of some are made."""
+    with _noted(objects) as found:
         if name == ALONE:
             for model in model_names():
                 SmartActuator(default_actuator(model, model), DEFAULT_TIMING).tick()
@@ -99,23 +105,17 @@ def _run(name: str) -> None:
 
 
 @contextmanager
-def _noted() -> Iterator[dict[str, Entry]]:
+def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
     """Note the entries that are asked for; bound kernels do nothing, but for loops of them."""
     found: dict[str, Entry] = {}
 
-    def note(entry: Entry) -> None:
-        try:
-            found[entry.symbol] = entry
-        except UnknownValue:
-            return      # it is compiled at the user's
-
     def address_of(entry: Entry) -> int:
-        note(entry)
-        return 0 if entry.kernel is run_rounds else _ADDRESS
+        found[entry.symbol] = entry
+        return objects.address(entry) if entry.kernel is run_rounds else _ADDRESS
 
-    def call_of(entry: Entry) -> Callable[[Sequence[Any]], Any]:
-        note(entry)
-        return lambda arguments: entry.kernel.compiled(*arguments)
+    def call_of(entry: Entry) -> Callable[[tuple[Any, ...]], Any]:
+        found[entry.symbol] = entry
+        return objects.call(entry)
 
     kernel.entry_address.cache_clear()
     try:

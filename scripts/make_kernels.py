@@ -11,20 +11,25 @@ not have is compiled at its first use.
 """
 
 from argparse import ArgumentParser
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
+from contextlib import contextmanager
 import multiprocessing
 import os
 from pathlib import Path
 import shutil
+import signal
 import sys
+from tempfile import TemporaryDirectory
 import time
 from typing import Any, NamedTuple, TextIO
 
 from isa_ros.core.kernel_library import SHIPPED
-from isa_ros.core.objects import library_of, object_of, own_target, Target, TARGETS
-from isa_ros.errors import ConfigError
-from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
+from isa_ros.core.lowering import lower_only
+from isa_ros.core.objects import library_of, own_target, Target, TARGETS
+from isa_ros.text.progress import terminal_line
+from scripts.kernel_objects import Objects
+from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, tick, Wanted
 
 PERIOD_S = 1.5          # between two lines
 _REHEARSAL = 30         # size of one, in kernels
@@ -39,29 +44,38 @@ class Job(NamedTuple):
     name: str
 
 
-class Made(NamedTuple):
-    """The objects of one entry by target, and why a target has none."""
-
-    objects: dict[str, bytes]
-    refused: dict[str, str]
+def make(wanted: Wanted, objects: Objects) -> dict[str, str]:
+    """Make the objects of an entry; return why a target has none."""
+    return objects.make(wanted.entry)
 
 
-def make(wanted: Wanted, targets: Sequence[str]) -> Made:
-    """Return the objects of an entry for targets."""
-    made = Made({}, {})
-    for name in targets:
-        try:
-            made.objects[name] = object_of({wanted.symbol: wanted.entry}, TARGETS[name])
-        except ConfigError as error:
-            made.refused[name] = str(error).rpartition(': ')[2]
-    return made
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Let processes that are started within ignore Ctrl-C: it is for the one that starts them."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _ended() -> Iterator[None]:
+    """End the processes at Ctrl-C, and do not wait for what they make."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        for process in multiprocessing.active_children():
+            process.kill()
+        raise
 
 
 class Progress:
-    """Prints how many kernels are made, and the time left by their sizes."""
+    """Prints how many kernels are made and the time left by sizes; on a terminal one line."""
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
         self._stream, self._clock = stream, clock
+        self._line = terminal_line(stream)
         self._began = self._shown = clock()
         self.made = self.total = 0
         """Entries."""
@@ -76,23 +90,28 @@ class Progress:
         self._shown = now
         spent = now - self._began
         rest = f'{spent * self.left / self.done:.0f} s left' if self.done else 'beginning'
-        self._stream.write(
-            f'kernels: {self.made} of {self.total}, {spent:.0f} s, '
-            + ('finished' if is_last else f'{rest}: {", ".join(running)}') + '\n')
-        self._stream.flush()
+        text = (f'kernels: {self.made} of {self.total}, {spent:.0f} s, '
+                + ('finished' if is_last else f'{rest}: {", ".join(running)}'))
+        if self._line is None:
+            print(text, file=self._stream, flush=True)
+        elif is_last:
+            self._line.end(text)
+        else:
+            self._line.show(text)
 
 
 class Making:
     """The jobs of all processes, the largest first."""
 
-    def __init__(self, targets: Sequence[str], progress: Progress) -> None:
-        self._targets, self._progress = targets, progress
+    def __init__(self, objects: Objects, progress: Progress) -> None:
+        self._objects, self._progress = objects, progress
         self._waiting: list[Job] = []
         self._running: dict[Future[Any], Job] = {}
-        self.made: dict[str, Made] = {}
-        """By symbol."""
+        self.refused: dict[str, dict[str, str]] = {}
+        """By symbol, why a target does not have it."""
+        self._want(tick())  # the largest, of all runs
         for name in rehearsals():
-            self._add(Job(_REHEARSAL, rehearse, (name,), f'kernels of {name}'))
+            self._add(Job(_REHEARSAL, rehearse, (name, objects), f'kernels of {name}'))
 
     def _add(self, job: Job) -> None:
         self._waiting.append(job)
@@ -102,11 +121,12 @@ class Making:
     def run(self, processes: int) -> None:
         """Do all jobs."""
         context = multiprocessing.get_context('spawn')
-        with ProcessPoolExecutor(processes, context) as pool:
+        with ProcessPoolExecutor(processes, context, initializer=lower_only) as pool, _ended():
             while self._waiting or self._running:
                 while self._waiting and len(self._running) < processes:
                     job = self._waiting.pop()
-                    self._running[pool.submit(job.work, *job.arguments)] = job
+                    with _without_interrupts():
+                        self._running[pool.submit(job.work, *job.arguments)] = job
                 for future in wait(self._running, PERIOD_S, 'FIRST_COMPLETED').done:
                     self._take(self._running.pop(future), future.result())
                 self._progress.show([job.name for job in self._running.values()])
@@ -115,28 +135,32 @@ class Making:
     def _take(self, job: Job, result: Any) -> None:
         progress = self._progress
         progress.done, progress.left = progress.done + job.size, progress.left - job.size
-        if isinstance(result, Made):
-            self.made[job.arguments[0].symbol] = result
+        if job.work is make:
+            self.refused[job.arguments[0].symbol] = result
             progress.made += 1
             return
         for wanted in result:
-            if wanted.symbol not in self.made:
-                self.made[wanted.symbol] = Made({}, {})
-                progress.total += 1
-                self._add(Job(wanted.size, make, (wanted, self._targets), wanted.name))
+            self._want(wanted)
+
+    def _want(self, wanted: Wanted) -> None:
+        if wanted.symbol not in self.refused:
+            self.refused[wanted.symbol] = {}
+            self._progress.total += 1
+            self._add(Job(wanted.size, make, (wanted, self._objects), wanted.name))
 
 
-def link(target: Target, made: Sequence[Made], out: Path) -> str:
+def link(target: Target, symbols: Iterable[str], objects: Objects, out: Path) -> str:
     """Write the library of a target; return a line about it."""
     is_own = target.triple == own_target().triple
     linker = 'cc' if is_own else f'{target.triple.replace("unknown-", "")}-ld'
     if shutil.which(linker) is None:
         return f'{target.name}: left out, there is no {linker} to link it with'
-    objects = [own.objects[target.name] for own in made if target.name in own.objects]
+    paths = [objects.path(symbol, target.name) for symbol in symbols]
+    codes = [path.read_bytes() for path in paths if path.exists()]
     aside = out / f'.{target.name}.part'
-    library_of(objects, aside, linker)
+    library_of(codes, aside, linker)
     path = aside.replace(out / f'{target.name}.so')
-    return (f'{path}: {len(objects)} of {len(made)} kernels, '
+    return (f'{path}: {len(codes)} of {len(paths)} kernels, '
             f'{path.stat().st_size / 2 ** 20:.1f} MiB')
 
 
@@ -152,16 +176,22 @@ def main(arguments: Sequence[str], stream: TextIO = sys.stdout) -> int:
     if unknown:
         parser.error(f'target {unknown[0]}: unknown, valid: {", ".join(TARGETS)}')
     targets = list(TARGETS) if given.all else given.targets or [own_target().name]
-    making = Making(targets, Progress(stream))
-    making.run(len(os.sched_getaffinity(0)))
     given.out.mkdir(parents=True, exist_ok=True)
-    for symbol, own in making.made.items():
-        for name, reason in own.refused.items():
-            print(f'{name}: not {symbol.rpartition("_")[0]}, {reason}', file=stream)
-    for name in targets:
-        print(link(TARGETS[name], list(making.made.values()), given.out), file=stream)
+    with TemporaryDirectory(dir=given.out, prefix='.') as directory:
+        objects = Objects(Path(directory), tuple(targets))
+        making = Making(objects, Progress(stream))
+        making.run(len(os.sched_getaffinity(0)))
+        for symbol, refused in making.refused.items():
+            for name, reason in refused.items():
+                print(f'{name}: not {symbol.rpartition("_")[0]}, {reason}', file=stream)
+        for name in targets:
+            print(link(TARGETS[name], making.refused, objects, given.out), file=stream)
     return 0
 
 
 if __name__ == '__main__':
-    sys.exit(main(sys.argv[1:]))
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        print('\nkernels: interrupted, they are compiled at their first use', file=sys.stderr)
+        sys.exit(130)

@@ -141,3 +141,53 @@ def test_an_interrupt_ends_pip_too(clone: Path) -> None:
         deadline = time.monotonic() + 60.0
         while any(Path(f'/proc/{own}').exists() for own in pip):
             assert time.monotonic() < deadline
+
+
+MADE = 'ran -m scripts.make_kernels\n'
+
+
+@pytest.fixture
+def ready(clone: Path) -> Path:
+    """Return a clone with its environment and what makes kernels."""
+    (clone / '.venv' / 'bin').mkdir(parents=True)
+    shutil.copy(clone / 'bin' / 'python3', clone / '.venv' / 'bin' / 'python')
+    shutil.copy(clone / 'requirements.txt', clone / '.venv')
+    (clone / 'scripts').mkdir()
+    (clone / 'scripts' / 'make_kernels.py').touch()
+    return clone
+
+
+def said(clone: Path, *words: str, **environment: str) -> tuple[str, str]:
+    """Return what a call says on both streams."""
+    path = f'{clone / "bin"}:{os.environ["PATH"]}'
+    done = subprocess.run([clone / 'isa', *words], capture_output=True, text=True, check=True,
+                          env={'PATH': path, **environment})
+    return done.stdout, done.stderr
+
+
+def test_kernels_are_made_before_the_first_simulation(ready: Path) -> None:
+    """Not for other commands, not without a compiled simulation, and once."""
+    assert said(ready, '--help') == ('ran -m isa_ros --help\n', '')
+    assert said(ready, 'demo', NUMBA_DISABLE_JIT='1') == ('ran -m isa_ros demo\n', '')
+    assert said(ready, 'demo') == ('ran -m isa_ros demo\n', MADE)
+    assert said(ready, 'step', 'isa_v5') == ('ran -m isa_ros step isa_v5\n', MADE)
+    (ready / 'isa_ros' / 'kernels').mkdir(parents=True)
+    (ready / 'isa_ros' / 'kernels' / 'x86-64.so').touch()
+    assert said(ready, 'demo') == ('ran -m isa_ros demo\n', '')
+
+
+def test_a_copy_without_scripts_makes_no_kernels(ready: Path) -> None:
+    """As an archive of a package has none."""
+    (ready / 'scripts' / 'make_kernels.py').unlink()
+    assert said(ready, 'demo') == ('ran -m isa_ros demo\n', '')
+
+
+@pytest.mark.parametrize(('code', 'expected'), [(130, 130), (1, 0)])
+def test_an_interrupt_ends_the_call_and_a_failure_does_not(
+        ready: Path, code: int, expected: int) -> None:
+    python = ready / '.venv' / 'bin' / 'python'
+    python.write_text(PYTHON.replace(
+        '    *) echo', f'    "-m scripts.make_kernels") exit {code} ;;\n    *) echo'))
+    done = subprocess.run([ready / 'isa', 'demo'], capture_output=True, text=True)
+    assert done.returncode == expected
+    assert done.stdout == ('' if expected else 'ran -m isa_ros demo\n')

@@ -195,9 +195,11 @@ class KernelCache(_Cache):
 
         numba's runtime is what machine code links to. Declaring all that kernels may call, and
         importing scipy for it, takes half of the processor time of a start; the compiler does
-        it itself where no file has the version.
+        it itself where no file has the version. No file has one that is not machine code.
         """
         rtsys.initialize(target_context)
+        if not issubclass(target_context.codegen()._library_class, JITCodeLibrary):
+            return None
         with contextlib.suppress(UnknownValue):     # not kept either
             name = self._name(sig, target_context.codegen())
             try:
@@ -211,6 +213,8 @@ class KernelCache(_Cache):
 
     def save_overload(self, sig: Any, cres: Any) -> None:
         """Keep a compiled version, if it is what its name says."""
+        if not isinstance(cres.library, JITCodeLibrary):
+            return      # `isa_ros.core.lowering`
         if cres.library.has_dynamic_globals or cres.lifted:
             return
         if self._write is None:

@@ -27,7 +27,7 @@ SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRAC
             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
 """Of numba, that change machine code: with one in the environment all kernels are compiled."""
 _RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
-_MAKERS = ('compiler', 'kinds', 'object_runtime', 'objects', 'words')
+_MAKERS = ('compiler', 'kinds', 'lowering', 'object_runtime', 'objects', 'words')
 _ROOM = (0,) * RESULT_WORDS
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))
@@ -125,19 +125,22 @@ def _found(entry: Named) -> tuple[ctypes.CDLL, str] | None:
 def address_in_library(entry: Named) -> int:
     """Return the address of an entry's machine code in a library, 0 if none has it."""
     found = _found(entry)
-    return 0 if found is None else _address_of(*found)
+    return 0 if found is None else address_in(*found)
 
 
-def _address_of(library: ctypes.CDLL, symbol: str) -> int:
+def address_in(library: ctypes.CDLL, symbol: str) -> int:
+    """Return the address of the machine code that a library has by a name."""
     return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
 
 
 def call_in_library(entry: Named) -> Callable[[tuple[Any, ...]], Any] | None:
     """Return what calls an entry's machine code with its arguments, None if no library has it."""
     found = _found(entry)
-    if found is None:
-        return None
-    library, symbol = found
+    return None if found is None else call_in(*found)
+
+
+def call_in(library: ctypes.CDLL, symbol: str) -> Call:
+    """Return what calls the machine code that a library has by a name with its arguments."""
     form = ctypes.string_at(ctypes.addressof(
         ctypes.c_char.in_dll(library, result_symbol(symbol)))).decode()
-    return Call(_address_of(library, symbol), kind_of_form(json.loads(form)))
+    return Call(address_in(library, symbol), kind_of_form(json.loads(form)))

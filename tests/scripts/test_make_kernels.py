@@ -1,31 +1,53 @@
 """The script that makes the libraries of kernels."""
 
 from concurrent.futures import Future, ProcessPoolExecutor
+from ctypes import CDLL
 import io
 from multiprocessing import get_context
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
 from types import SimpleNamespace
 
 from isa_ros.core.bound import run_rounds
 from isa_ros.core.elf import symbols
+from isa_ros.core.kernel_library import address_in
+from isa_ros.core.lowering import lower_only
 from isa_ros.core.objects import own_target, TARGETS
 import pytest
-from scripts import make_kernels
+from scripts import kernel_objects, make_kernels
+from scripts.kernel_objects import Objects
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
-from scripts.make_kernels import link, Made, main, make, Making, PERIOD_S, Progress
+from scripts.make_kernels import link, main, make, Making, PERIOD_S, Progress
+from tests.text.terminal import Terminal
 
+ROOT = Path(__file__).parents[2]
 OWN = own_target()
 
 
-def rehearsed(name):
-    """Return what a rehearsal asks for, in a process that has asked for nothing."""
-    with ProcessPoolExecutor(1, get_context('spawn')) as process:
-        return process.submit(rehearse, name).result()
+@pytest.fixture(scope='module')
+def objects(tmp_path_factory):
+    """Return where objects of all targets are made."""
+    return Objects(tmp_path_factory.mktemp('objects'), tuple(TARGETS))
+
+
+def in_lowering(work, *arguments):
+    """Return what work gives in a process that lowers kernels and has asked for nothing."""
+    with ProcessPoolExecutor(1, get_context('spawn'), initializer=lower_only) as process:
+        return process.submit(work, *arguments).result()
+
+
+def rehearsed(name, objects):
+    """Return what a rehearsal asks for."""
+    return in_lowering(rehearse, name, objects._replace(targets=()))
 
 
 @pytest.fixture(scope='module')
-def alone():
+def alone(objects):
     """Return what actuators without a run ask for, by name."""
-    return {wanted.name: wanted for wanted in rehearsed(ALONE)}
+    return {wanted.name: wanted for wanted in rehearsed(ALONE, objects)}
 
 
 def test_every_configuration_is_rehearsed():
@@ -39,11 +61,22 @@ def test_actuators_ask_for_their_tick(alone):
     assert tick.size > 150 > divide.size > 3
     assert tick.entry.symbol == tick.symbol
     assert tick.entry.kernel.__module__ == 'isa_ros.actuator.ticking'
+    assert in_lowering(make_kernels.tick) == tick
+
+
+def test_what_a_rehearsal_calls_is_made(alone, objects):
+    """Once: it needs no second time, and bound kernels are left to others."""
+    path = objects.path(alone['divide'].symbol, OWN.name)
+    assert path.read_bytes()[:4] == b'\x7fELF'
+    assert not objects.path(alone['group_tick'].symbol, OWN.name).exists()
+    made = path.stat().st_mtime_ns
+    assert make(alone['divide'], objects._replace(targets=())) == {}
+    assert path.stat().st_mtime_ns == made
 
 
 @pytest.mark.slow
-def test_a_leg_asks_for_all_that_its_run_needs():
-    found = rehearsed('leg.yaml')
+def test_a_leg_asks_for_all_that_its_run_needs(objects):
+    found = rehearsed('leg.yaml', objects)
     names = {(wanted.name, wanted.is_called) for wanted in found}
     assert {('leg_terms', True), ('fill_ports', False), ('record', False), ('watch', False),
             ('keep', False), ('answer_ticks', False), ('receive_answers', False),
@@ -54,29 +87,41 @@ def test_a_leg_asks_for_all_that_its_run_needs():
 
 
 @pytest.mark.slow
-def test_controllers_of_scenarios_ask_for_their_kernels():
+def test_controllers_of_scenarios_ask_for_their_kernels(objects):
     """The trot swings its feet after half a second."""
-    names = {wanted.name for wanted in rehearsed('quadruped.yaml')}
+    names = {wanted.name for wanted in rehearsed('quadruped.yaml', objects)}
     assert {'update_legs', 'share_wrench', 'limit_forces', 'swing_feet'} <= names
 
 
-def test_objects_of_an_entry(alone):
+def test_objects_of_an_entry(alone, objects):
     wanted = alone['oil_stiffness']
-    made = make(wanted, list(TARGETS))
-    assert made.refused == {} and list(made.objects) == list(TARGETS)
-    for code in made.objects.values():
+    assert in_lowering(make, wanted, objects) == {}
+    for name in TARGETS:
+        code = objects.path(wanted.symbol, name).read_bytes()
         seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
         assert {wanted.symbol, f'{wanted.symbol}_result'} <= seen
 
 
-def test_a_target_that_cannot_have_an_entry_says_why(alone, monkeypatch):
-    def refuse(entries, target):
-        if target.name == 'x86-64':
-            raise make_kernels.ConfigError('object of merge_0: undefined sin, must have none')
-        return b'code'
-    monkeypatch.setattr(make_kernels, 'object_of', refuse)
-    assert make(alone['merge'], ['x86-64-v3', 'x86-64']) == Made(
-        {'x86-64-v3': b'code'}, {'x86-64': 'undefined sin, must have none'})
+def refuse(entries, target):
+    """Make the object of no target but x86-64."""
+    if target.name != 'x86-64':
+        raise kernel_objects.ConfigError('object of merge_0: undefined sin, must have none')
+    return b'code'
+
+
+def test_a_target_that_cannot_have_an_entry_says_why(alone, tmp_path, monkeypatch):
+    monkeypatch.setattr(kernel_objects, 'object_of', refuse)
+    monkeypatch.setattr(kernel_objects, 'own_target', lambda: TARGETS['x86-64'])
+    objects = Objects(tmp_path, ('x86-64-v3',))
+    assert make(alone['merge'], objects) == {'x86-64-v3': 'undefined sin, must have none'}
+    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b'code']
+
+
+def test_what_cannot_be_called_is_named(alone, tmp_path, monkeypatch):
+    monkeypatch.setattr(kernel_objects, 'object_of', refuse)
+    monkeypatch.setattr(kernel_objects, 'own_target', lambda: TARGETS['aarch64'])
+    with pytest.raises(kernel_objects.ConfigError, match='^kernel merge: undefined sin, must'):
+        Objects(tmp_path, ()).address(alone['merge'].entry)
 
 
 def test_progress_says_how_many_and_the_time_left():
@@ -94,11 +139,39 @@ def test_progress_says_how_many_and_the_time_left():
         'kernels: 5 of 5, 8 s, finished']
 
 
+def test_progress_on_a_terminal_is_one_line():
+    times, said = iter([0.0, 2.0, 4.0, 5.0]), Terminal()
+    progress = Progress(said, lambda: next(times))
+    progress.total, progress.left, progress.done, progress.made = 3, 20, 40, 2
+    progress.show(['tick'])
+    progress.show(['merge'])
+    progress.show([], is_last=True)
+    assert [text.replace('\033[K', '') for text in said.getvalue().split('\r')] == [
+        '', 'kernels: 2 of 3, 2 s, 1 s left: tick', 'kernels: 2 of 3, 4 s, 2 s left: merge',
+        'kernels: 2 of 3, 5 s, finished\n']
+
+
+@pytest.mark.slow
+def test_ctrl_c_ends_all_at_once(tmp_path):
+    """One line; no process and no object is left."""
+    making = subprocess.Popen(
+        [sys.executable, '-m', 'scripts.make_kernels', '--out', str(tmp_path)], cwd=ROOT,
+        env={**os.environ, 'PYTHONPATH': str(ROOT)}, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True, start_new_session=True)
+    assert making.stdout is not None
+    assert making.stdout.readline().startswith('kernels: 0 of 1, ')
+    os.killpg(making.pid, signal.SIGINT)
+    said, errors = making.communicate(timeout=60.0)     # until all have closed the pipes
+    assert (making.returncode, errors) == (
+        130, '\nkernels: interrupted, they are compiled at their first use\n')
+    assert list(tmp_path.iterdir()) == []
+
+
 class Now:
     """Futures of work that is done at once."""
 
-    def __init__(self, processes, context):
-        self.processes = processes
+    def __init__(self, processes, context, initializer):
+        assert initializer is lower_only
 
     def __enter__(self):
         return self
@@ -112,18 +185,23 @@ class Now:
         return future
 
 
-def test_the_largest_are_made_first_and_each_once(monkeypatch):
+def test_the_largest_are_made_first_and_each_once(monkeypatch, tmp_path):
     order = []
+    objects = Objects(tmp_path, ('v3',))
 
-    def rehearsed(name):
-        order.append(name)
-        return [Wanted('m', name, None, False, symbol, size)
-                for symbol, size in {'leg': [('a', 9), ('b', 90)], 'arm': [('b', 90), ('c', 20)],
-                                     ALONE: [('tick', 200)]}[name]]
+    def wanted(symbol, size):
+        return Wanted('m', symbol, None, False, symbol, size)
 
-    def made(wanted, targets):
-        order.append(wanted.symbol)
-        return Made({targets[0]: wanted.symbol.encode()}, {})
+    def rehearsed(name, own):
+        order.append((name, own))
+        return [wanted(*each) for each in {
+            'leg': [('a', 9), ('b', 90)], 'arm': [('b', 90), ('c', 20)],
+            ALONE: [('tick', 200), ('d', 8)]}[name]]
+
+    def made(own, given):
+        order.append((own.symbol, given))
+        return {'v3': 'undefined sin'} if own.symbol == 'b' else {}
+    monkeypatch.setattr(make_kernels, 'tick', lambda: wanted('tick', 200))
     monkeypatch.setattr(make_kernels, 'rehearsals', lambda: ['leg', ALONE, 'arm'])
     monkeypatch.setattr(make_kernels, 'rehearse', rehearsed)
     monkeypatch.setattr(make_kernels, 'make', made)
@@ -132,30 +210,36 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch):
         make_kernels, 'wait', lambda futures, *_: SimpleNamespace(done=list(futures)))
     said = io.StringIO()
     progress = Progress(said)
-    making = Making(['v3'], progress)
+    making = Making(objects, progress)
+    assert progress.total == 1
     making.run(1)
-    assert (progress.left, progress.done) == (0, 3 * 30 + 200 + 90 + 20 + 9)
-    assert order == [ALONE, 'tick', 'arm', 'b', 'leg', 'c', 'a']
-    assert {symbol: own.objects for symbol, own in making.made.items()} == {
-        symbol: {'v3': symbol.encode()} for symbol in ('tick', 'b', 'c', 'a')}
-    assert said.getvalue().splitlines()[-1] == 'kernels: 4 of 4, 0 s, finished'
+    assert (progress.left, progress.done) == (0, 3 * 30 + 200 + 90 + 20 + 9 + 8)
+    assert order == [(name, objects) for name in (
+        'tick', ALONE, 'arm', 'b', 'leg', 'c', 'a', 'd')]
+    assert making.refused == {
+        'tick': {}, 'd': {}, 'b': {'v3': 'undefined sin'}, 'c': {}, 'a': {}}
+    assert said.getvalue().splitlines()[-1] == 'kernels: 5 of 5, 0 s, finished'
 
 
-def test_a_library_of_what_was_made(tmp_path, alone):
-    several = [make(alone[name], [OWN.name]) for name in ('merge', 'oil_stiffness')]
-    line = link(OWN, [*several, Made({}, {OWN.name: 'undefined sin'})], tmp_path)
+def test_a_library_of_what_was_made(tmp_path, alone, objects):
+    names = ('merge', 'oil_stiffness', 'group_tick')    # the last one is not made
+    for name in names[:2]:
+        assert in_lowering(make, alone[name], objects) == {}
+    line = link(OWN, [alone[name].symbol for name in names], objects, tmp_path)
     path = tmp_path / f'{OWN.name}.so'
     assert line == f'{path}: 2 of 3 kernels, {path.stat().st_size / 2 ** 20:.1f} MiB'
     assert [own.name for own in tmp_path.iterdir()] == [path.name]
+    assert address_in(CDLL(str(path)), alone['merge'].symbol)
 
 
-def test_without_a_linker_a_target_is_left_out(tmp_path, monkeypatch):
+def test_without_a_linker_a_target_is_left_out(tmp_path, monkeypatch, objects):
     monkeypatch.setattr(make_kernels.shutil, 'which', lambda name: None)
     other = TARGETS['aarch64' if OWN.name != 'aarch64' else 'x86-64']
     linker = 'aarch64-linux-gnu-ld' if other.name == 'aarch64' else 'x86_64-linux-gnu-ld'
-    assert link(other, [], tmp_path) == (
+    assert link(other, [], objects, tmp_path) == (
         f'{other.name}: left out, there is no {linker} to link it with')
-    assert link(OWN, [], tmp_path) == f'{OWN.name}: left out, there is no cc to link it with'
+    assert link(OWN, [], objects, tmp_path) == (
+        f'{OWN.name}: left out, there is no cc to link it with')
     assert list(tmp_path.iterdir()) == []
 
 

@@ -33,16 +33,17 @@ def swing_way(u, seconds, lift, start, end, place, speed):
 
 
 @kernel
-def swing_feet(trunk, progress, seconds, holds, gains, feet, velocities, lifted, forces):
+def swing_feet(trunk, progress, seconds, holds, gains, feet, velocities, lifted, ways, forces):
     """
     Fill the forces that pull swinging feet along their ways to their footholds, (f, 3).
 
     ``trunk`` is its place and velocity, (6,), ``holds`` the footholds at the end of the swing as
     seen now, (f, 2), ``gains`` lift, press, stiffness and damping, ``feet`` and ``velocities`` as
-    in `isa_ros.examples.quadruped.legs.Legs`, ``lifted`` where each foot left the ground.
+    in `isa_ros.examples.quadruped.legs.Legs`, ``lifted`` where each foot left the ground; ``ways``
+    is memory, (3, 3).
     """
     lift, press, stiffness, damping = gains
-    end, place, speed = np.empty(3), np.empty(3), np.empty(3)
+    end, place, speed = ways[0], ways[1], ways[2]
     for i in range(len(feet)):
         if progress[i] <= 0.0:
             continue

@@ -1,6 +1,7 @@
 """Sharing of a wrench among the feet that stand."""
 
 import math
+from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
 import numpy as np
@@ -11,33 +12,49 @@ WEIGHTS = np.array([1.0, 1.0, 2.0, 4.0, 4.0, 2.0])
 """Of errors of force (N) along x, y, z and of moment (Nm) about them."""
 
 
+class Equations(NamedTuple):
+    """Memory of `share_wrench` for f feet."""
+
+    maps: np.ndarray
+    """(f, 6, 3)."""
+    square: np.ndarray
+    """(6, 6)."""
+    solution: np.ndarray
+    """(6,)."""
+
+
+def equations(feet: int) -> Equations:
+    """Return the memory for so many feet."""
+    return Equations(np.zeros((feet, 6, 3)), np.zeros((6, 6)), np.zeros(6))
+
+
 @kernel
-def share_wrench(wrench, arms, is_standing, weights, regularisation, forces):
+def share_wrench(wrench, arms, is_standing, weights, regularisation, own, forces):
     """
     Fill the forces of the ground on the feet, (f, 3), which together give a wrench, (6,).
 
     They minimise |W (A f - w)|^2 + e |f|^2 with A f = (sum f_i, sum r_i x f_i); the six equations
     of f = A' W (W A A' W + e)^-1 W w are solved by Cholesky. ``arms`` r_i lead from the point of
-    the wrench, (f, 3). A foot that swings has none.
+    the wrench, (f, 3). A foot that swings has none. ``own`` are `Equations`.
     """
     n = len(arms)
-    maps = np.zeros((n, 6, 3))
-    square = np.zeros((6, 6))
+    maps, square, solution = own.maps, own.square, own.solution
+    maps.fill(0.0)
+    square.fill(0.0)
     for i in range(n):
         if not is_standing[i]:
             continue
         x, y, z = arms[i, 0], arms[i, 1], arms[i, 2]
-        own = maps[i]
+        foot = maps[i]
         for a in range(3):
-            own[a, a] = weights[a]
-        own[3, 1], own[3, 2] = -z * weights[3], y * weights[3]
-        own[4, 0], own[4, 2] = z * weights[4], -x * weights[4]
-        own[5, 0], own[5, 1] = -y * weights[5], x * weights[5]
+            foot[a, a] = weights[a]
+        foot[3, 1], foot[3, 2] = -z * weights[3], y * weights[3]
+        foot[4, 0], foot[4, 2] = z * weights[4], -x * weights[4]
+        foot[5, 0], foot[5, 1] = -y * weights[5], x * weights[5]
         for a in range(6):
             for b in range(a + 1):
                 for c in range(3):
-                    square[a, b] += own[a, c] * own[b, c]
-    solution = np.zeros(6)
+                    square[a, b] += foot[a, c] * foot[b, c]
     for a in range(6):
         square[a, a] += regularisation
         for b in range(a + 1):

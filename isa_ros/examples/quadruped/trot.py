@@ -35,7 +35,7 @@ from isa_ros.examples.quadruped.legs import Legs
 from isa_ros.examples.quadruped.parameters import (
     gains_of, PROGRAM, Program, program_of, TrotGains)
 from isa_ros.examples.quadruped.stance import (
-    limit_forces, REGULARISATION, share_wrench, WEIGHTS)
+    equations, limit_forces, REGULARISATION, share_wrench, WEIGHTS)
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
 import numpy as np
 
@@ -101,6 +101,7 @@ class Trot(Controller):
         n = len(self._legs.paths)
         self._lifted = np.zeros((n, 3))
         self._forces = np.zeros((n, 3))
+        self._equations, self._ways = equations(n), np.zeros((3, 3))
         self._home = np.zeros((n, 2))
         self._anchor = np.zeros(2)
         self._heading = np.array([1.0, 0.0])
@@ -188,7 +189,7 @@ class Trot(Controller):
         wrench[3:] = root @ (self._inertia @ (root.T @ (
             -gains.tilt_stiffness * tilt - gains.tilt_damping * turning_error)))
         share_wrench(wrench, legs.feet - com, gait.is_standing, WEIGHTS, REGULARISATION,
-                     self._forces)
+                     self._equations, self._forces)
         limit_forces(
             gait.is_standing, gains.least_force, gains.most_force, gains.friction, self._forces)
         np.negative(self._forces, out=self._forces)
@@ -209,7 +210,8 @@ class Trot(Controller):
         holds = place + offset + self._home @ level(_heading(root)).T
         swing_feet(
             np.concatenate([own[:3], own[7:10]]), gait.progress, gait.swing_s, holds,
-            self._swing_gains, legs.feet, legs.velocities, self._lifted, self._forces)
+            self._swing_gains, legs.feet, legs.velocities, self._lifted, self._ways,
+            self._forces)
 
     def snapshot(self) -> bytes:
         """Return the whole state."""

@@ -85,7 +85,7 @@ def test_a_swinging_foot_is_pulled_to_its_way_and_a_standing_one_is_not():
     lifted, holds = np.array([START, [1.3, 1.8, 0.0]]), np.array([[0.0, 0.0], [1.5, 1.7]])
     forces = np.full((2, 3), 7.0)
     swing_feet(trunk, np.array([0.0, 0.6]), 0.26, holds, (0.08, 0.004, 1500.0, 60.0), feet,
-               velocities, lifted, forces)
+               velocities, lifted, np.full((3, 3), 9.0), forces)
     assert forces[0].tolist() == [7.0, 7.0, 7.0]
     end = np.array([1.5 + 0.3 * 0.4 * 0.26, 1.7 - 0.2 * 0.4 * 0.26, -0.004])
     place, speed = np.empty(3), np.empty(3)

@@ -1,7 +1,7 @@
 """Sharing of a wrench among the feet that stand."""
 
 from isa_ros.examples.quadruped.stance import (
-    limit_forces, REGULARISATION, share_wrench, WEIGHTS)
+    equations, limit_forces, REGULARISATION, share_wrench, WEIGHTS)
 import numpy as np
 import pytest
 
@@ -10,11 +10,14 @@ ARMS = np.array([[0.45, 0.26, -0.56], [0.45, -0.25, -0.55], [-0.44, 0.26, -0.56]
 WRENCH = np.array([30.0, -20.0, 1055.0, 12.0, -25.0, 8.0])
 ALL = np.ones(4, bool)
 DIAGONAL = np.array([True, False, False, True])
+USED = equations(4)
+for each in USED:
+    each[:] = 7.0   # as a call before has left them
 
 
 def shared(is_standing: np.ndarray, wrench: np.ndarray = WRENCH) -> np.ndarray:
     forces = np.full((4, 3), np.nan)
-    share_wrench(wrench, ARMS, is_standing, WEIGHTS, REGULARISATION, forces)
+    share_wrench(wrench, ARMS, is_standing, WEIGHTS, REGULARISATION, USED, forces)
     return forces
 
 
@@ -49,7 +52,7 @@ def test_it_is_the_least_squares_solution(is_standing):
 
 def test_compiled_and_plain_are_equal():
     plain = np.zeros((4, 3))
-    share_wrench.py_func(WRENCH, ARMS, ALL, WEIGHTS, REGULARISATION, plain)
+    share_wrench.py_func(WRENCH, ARMS, ALL, WEIGHTS, REGULARISATION, USED, plain)
     assert plain.tobytes() == shared(ALL).tobytes()
 
 

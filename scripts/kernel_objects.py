@@ -1,0 +1,70 @@
+"""Objects of kernels in a directory: each is made once, by the process that needs it first."""
+
+import ctypes
+from pathlib import Path
+import tempfile
+from typing import NamedTuple
+
+from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel_library import address_in, Call, call_in
+from isa_ros.core.objects import library_of, object_of, own_target, TARGETS
+from isa_ros.errors import ConfigError
+
+
+class Objects(NamedTuple):
+    """The objects of entries for some targets, and for this machine."""
+
+    directory: Path
+    targets: tuple[str, ...]
+
+    def path(self, symbol: str, target: str) -> Path:
+        """Return where the object of an entry is, once it is made."""
+        return self.directory / f'{symbol}.{target}.o'
+
+    def make(self, entry: Entry) -> dict[str, str]:
+        """Make those of an entry that are missing; return why a target has none."""
+        refused = {}
+        for name in dict.fromkeys((*self.targets, own_target().name)):
+            path = self.path(entry.symbol, name)
+            if not path.exists():
+                try:
+                    _write(path, object_of({entry.symbol: entry}, TARGETS[name]))
+                except ConfigError as error:
+                    refused[name] = str(error).rpartition(': ')[2]
+        return refused
+
+    def address(self, entry: Entry) -> int:
+        """
+        Return the address of an entry's machine code in this process.
+
+        Raises
+        ------
+        ConfigError
+            It cannot be made.
+
+        """
+        return address_in(self._loaded(entry), entry.symbol)
+
+    def call(self, entry: Entry) -> Call:
+        """Return what calls an entry with its arguments; raises as `address`."""
+        return call_in(self._loaded(entry), entry.symbol)
+
+    def _loaded(self, entry: Entry) -> ctypes.CDLL:
+        """Return the library of an entry alone."""
+        path = self.directory / f'{entry.symbol}.so'
+        if not path.exists():
+            refused = self.make(entry).get(own_target().name)
+            if refused:
+                raise ConfigError(f'kernel {entry.symbol.rpartition("_")[0]}: {refused}')
+            with tempfile.TemporaryDirectory(dir=self.directory) as aside:
+                library = Path(aside, path.name)
+                library_of([self.path(entry.symbol, own_target().name).read_bytes()], library)
+                library.replace(path)
+        return ctypes.CDLL(str(path))
+
+
+def _write(path: Path, code: bytes) -> None:
+    """Write an object aside and put it in place."""
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file.write(code)
+    Path(file.name).replace(path)
