@@ -76,9 +76,10 @@ class Setpoints(NamedTuple):
     """
 
     names: Sequence[str]
-    position: ArrayLike
-    velocity: ArrayLike = 0.0
-    effort: ArrayLike = 0.0
+    position: ArrayLike | None
+    velocity: ArrayLike | None = None
+    """None: 0, as an effort of None, which is refused where a mode uses it."""
+    effort: ArrayLike | None = None
     stiffness: ArrayLike | None = None
     """None keeps the gains in force, as does a damping of None."""
     damping: ArrayLike | None = None

@@ -1,6 +1,6 @@
 """Requests of controllers, programs and nodes: setpoints become rows, or are refused."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import math
 from typing import Any
 
@@ -16,6 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 _NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
+_ZERO_IF_NONE = slice(1, 3)     # of these: velocity and effort
+_OUTER = (0, POSITION, IMPEDANCE)
+"""No mode yet, and the modes that follow a position; those further in use the effort."""
 _COLUMNS = slice(1, 1 + len(_NUMBERS))     # of a `COMMAND`: behind the word of its two flags
 _GAINS = slice(-len(GAINS_OF_COMMAND), None)
 
@@ -36,8 +39,10 @@ def fill_requests(
 
     """
     if isinstance(setpoints, Setpoints):
-        _fill_rows(setpoints, names, requests)
-        return
+        if setpoints.position is not None:
+            _fill_rows(setpoints, names, requests, samples)
+            return
+        setpoints = _by_name(setpoints)
     if not isinstance(setpoints, Mapping):
         raise SetpointError(f'{_quoted(setpoints)} are no setpoints by actuator')
     for name, setpoint in setpoints.items():
@@ -57,37 +62,43 @@ def fill_requests(
 
 
 def _fill_rows(
-        setpoints: Setpoints, names: Sequence[str], requests: NDArray[np.void]) -> None:
-    """Write setpoints of several actuators into their `COMMAND` rows; as `fill_requests`."""
+        setpoints: Setpoints, names: Sequence[str], requests: NDArray[np.void],
+        samples: Mapping[str, np.record] | None) -> None:
+    """Write setpoints of several positions into their `COMMAND` rows; as `fill_requests`."""
     try:
         rows = [names.index(name) for name in setpoints.names]
         values = np.full((len(_NUMBERS), len(rows)), math.nan)
+        values[_ZERO_IF_NONE] = 0.0
         given = [k for k, field in enumerate(_NUMBERS) if getattr(setpoints, field) is not None]
         for k in given:
             values[k] = getattr(setpoints, _NUMBERS[k])
         if not np.isfinite(values[given]).all() or (values[_GAINS] < 0.0).any():
             raise ValueError
+        if setpoints.effort is None and samples is not None and any(
+                samples[names[row]].device_mode not in _OUTER for row in rows):
+            raise ValueError
     except (TypeError, ValueError):
-        _refuse_rows(setpoints, names)
+        fill_requests(_by_name(setpoints), names, np.zeros(len(names), COMMAND), samples)
         raise
     floats(requests)[rows, _COLUMNS] = values.T
     requests['kinds'][rows] = HAS_SETPOINT
 
 
-def _refuse_rows(setpoints: Setpoints, names: Sequence[str]) -> None:
-    """Refuse the first of several setpoints that is invalid."""
-    fields = setpoints._asdict()
+def _by_name(setpoints: Setpoints) -> dict[str, Setpoint]:
+    """Return setpoints of several actuators as one of each; raises `SetpointError`."""
+    names = setpoints.names
+    if not isinstance(names, Iterable) or not all(isinstance(name, str) for name in names):
+        raise SetpointError(f'{_quoted(names)} are no names of actuators')
     for field in _NUMBERS:
-        given = fields[field]
+        given = getattr(setpoints, field)
         try:
             if given is not None:
-                np.broadcast_to(np.asarray(given, np.float64), len(setpoints.names))
+                np.broadcast_to(np.asarray(given, np.float64), len(names))
         except (TypeError, ValueError):
             raise SetpointError(
                 f'setpoint {field} = {_quoted(given)}, must be a number or '
-                f'{len(setpoints.names)} numbers') from None
-    row = np.zeros(len(names), COMMAND)
-    fill_requests({name: setpoints.of(k) for k, name in enumerate(setpoints.names)}, names, row)
+                f'{len(names)} numbers') from None
+    return {name: setpoints.of(k) for k, name in enumerate(names)}
 
 
 def _complete(name: str, sample: np.record, row: np.void) -> None:
@@ -112,7 +123,7 @@ def refuse_without_effort(name: str, setpoint: Setpoint, mode: int) -> None:
     """
     own = MODES.index(setpoint.mode) if setpoint.mode in MODES[1:] else mode
     if (setpoint.position is not None and setpoint.effort is None
-            and own not in (0, POSITION, IMPEDANCE)
+            and own not in _OUTER
             and all(getattr(setpoint, field) is None for field in REFERENCES)):
         needed = 'effort' if own == FORCE else f'{MODES[own]}, or an effort,'
         raise SetpointError(

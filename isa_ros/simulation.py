@@ -22,7 +22,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.requests import fill_requests, refuse_without_effort
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.tick.calling import CallingTransport
@@ -236,15 +236,33 @@ class Simulation:
 
     def resume(self, state: RunState) -> None:
         """
-        Continue from a `state` of the same configuration.
+        Continue from a `state` of the same configuration, or change nothing.
+
+        A run whose own state cannot be saved, as after `SimulationDiverged`, is left half
+        restored where the new one is refused.
 
         Raises
         ------
         ConfigError
             The state is not one of this configuration.
+        RunError
+            A controller or an external body refuses its part.
 
         """
-        self.loop.restore(state)
+        before = self._state_if_any()
+        try:
+            self.loop.restore(state)
+        except IsaError:
+            if before is not None:
+                self.loop.restore(before)
+            raise
+
+    def _state_if_any(self) -> RunState | None:
+        """Return the state; None: it cannot be saved."""
+        try:
+            return self.state()
+        except IsaError:
+            return None
 
     def snapshot(self) -> bytes:
         """Return the complete state as bytes for `restore`; raises as `state`."""

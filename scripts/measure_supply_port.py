@@ -103,16 +103,19 @@ def difference(volume_ml: float, port: str, motion: str) -> Difference:
                       float(exact.min()), float(exact.max()))
 
 
+def row(motion: str, volume_ml: float, own: Difference) -> str:
+    """Return a row of the table of the page."""
+    return (f'| {motion} | {volume_ml:g} ml | {own.least / MPA:.1f} to {own.most / MPA:.1f} MPa '
+            f'| {own.rms / MPA:.3f}, {own.greatest / MPA:.2f} MPa |')
+
+
 def table() -> str:
     """Return the table of the page."""
     lines = ['| motion | oil in the manifold | pressure of one ODE | moving port: rms, greatest |',
              '|---|---|---|---|']
     for motion in MOTIONS:
         for volume in VOLUMES_ML:
-            own = difference(volume, 'moving', motion)
-            lines.append(
-                f'| {motion} | {volume:g} ml | {own.least / MPA:.1f} to {own.most / MPA:.1f} MPa '
-                f'| {own.rms / MPA:.3f}, {own.greatest / MPA:.2f} MPa |')
+            lines.append(row(motion, volume, difference(volume, 'moving', motion)))
             print(lines[-1], flush=True)
     return '\n'.join(lines)
 

@@ -35,9 +35,11 @@ class Browser:
         """Load a file and wait until it is drawn."""
         self.visit(page.resolve().as_uri())
 
-    def visit(self, address: str) -> None:
-        """Open an address and wait until its page is drawn."""
+    def visit(self, address: str, *, is_drawn: bool = True) -> None:
+        """Open an address and wait until its page is drawn, if it is one of ours."""
         self._call('POST', '/url', {'url': address})
+        if not is_drawn:
+            return
         self.wait('return document.body.dataset.ready !== undefined')
 
     def run(self, script: str, *arguments: Any) -> Any:

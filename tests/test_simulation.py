@@ -1,85 +1,32 @@
 """The model as an object: a tick, its commands, and where it can begin anew."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 import json
 import math
-import struct
 
 import isa_ros
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.config.runs.supplies import SupplyConfig
-from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.controller import Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
 from isa_ros.run.output import packer_of, RunOutput
-from isa_ros.scenario.scenario import idle, load_scenario, Scenario, scenario_of
+from isa_ros.scenario.scenario import idle, load_scenario, scenario_of
 from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
+from tests.counted import Counter, drop, RUN, shows, stepped
 from tests.golden.message_digests import Digests, FILE, SECONDS
-from tests.runs import ACCUMULATOR, CONSTANT, hip_and_knee
 from tests.sheets import setpoint
 
-RUN = hip_and_knee([SupplyConfig('constant', CONSTANT, ('hip',)),
-                    SupplyConfig('pump', ACCUMULATOR, ('knee',))])
 RECORDED = json.loads(FILE.read_text(encoding='utf-8'))
-
-
-class Counter(Controller):
-    """Asks one actuator for a place that counts the ticks since its start; a state of its own."""
-
-    def __init__(self, name: str = 'knee', offset: float = 0.0) -> None:
-        self.name, self.offset = name, offset
-        self.count = 0
-        self.shown: list[tuple[int, list[float], list[float]]] = []
-        self.starts: list[list[str]] = []
-
-    def start(self, names: Sequence[str]) -> None:
-        self.count = 0
-        self.starts.append(list(names))
-
-    def step(self, state: State) -> Mapping[str, Setpoint]:
-        self.shown.append((
-            state.t_ns, [float(own.position) for own in state.actuators.values()],
-            [float(own.pressure) for own in state.supplies.values()]))
-        self.count += 1
-        return {self.name: Setpoint(self.offset + 1e-4 * self.count)}
-
-    def snapshot(self) -> bytes:
-        return struct.pack('<q', self.count)
-
-    def restore(self, snapshot: bytes) -> None:
-        self.count, = struct.unpack('<q', snapshot)
-
-
-def shows(simulation: Simulation) -> bytes:
-    """Return everything that the simulation shows now."""
-    body = b'' if simulation.body_sample is None else simulation.body_sample.tobytes()
-    return b''.join([
-        *(own.tobytes() for own in simulation.samples.values()),
-        *(own.tobytes() for own in simulation.supply_samples.values()), body,
-        simulation.applied.tobytes(), repr(simulation.tuned).encode()])
-
-
-def stepped(simulation: Simulation, ticks: int) -> list[bytes]:
-    """Return what the simulation shows after each of some ticks."""
-    said = []
-    for _ in range(ticks):
-        simulation.step()
-        said.append(shows(simulation))
-    return said
 
 
 def applied_position(simulation: Simulation, name: str = 'knee') -> float | None:
     """Return the position that took effect at the last tick's start; None: no setpoint did."""
     row = simulation.applied[simulation.names.index(name)]
     return float(row['position']) if row['kinds'] & HAS_SETPOINT else None
-
-
-def drop() -> Scenario:
-    return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG)))
 
 
 @pytest.mark.golden
@@ -175,46 +122,6 @@ def test_what_was_tuned_is_in_force_from_the_first_tick_after_a_reset():
     simulation.reset()
     assert simulation.tuned == {}
     assert stepped(simulation, 5) == first
-
-
-@pytest.mark.parametrize('has_controller', [False, True])
-def test_it_goes_on_from_its_middle_byte_for_byte(has_controller):
-    """With what controllers asked for, what was commanded and tuned but not in force yet."""
-    def made() -> Simulation:
-        return Simulation(drop(), [Counter('kfe', 0.05), Counter('hfe', 0.03)]
-                          if has_controller else [])
-    simulation = made()
-    stepped(simulation, 60)  # before the slider is released
-    simulation.command('haa', position=0.8)
-    simulation.group.actuators[2].tune({'force.kp': 1e-7})
-    saved = simulation.snapshot()
-    then, samples = simulation.ticks, simulation.samples['kfe'].tobytes()
-    rest = stepped(simulation, 100)
-    other = made()
-    for again in (simulation, other):
-        assert again.restore(saved)['kfe'].tobytes() == samples
-        assert again.ticks == then
-        assert stepped(again, 100) == rest
-        assert again.snapshot() == simulation.snapshot()
-
-
-def test_a_state_of_another_run_or_of_other_controllers_is_refused():
-    saved = Simulation(idle(RUN), [Counter()]).snapshot()
-    with pytest.raises(ConfigError, match='saved from the configuration .*, must be that of this'):
-        Simulation(drop(), [Counter()]).restore(saved)
-    with pytest.raises(ConfigError, match='the saved state has 3 participants, the run has 2'):
-        Simulation(idle(RUN)).restore(saved)
-
-
-@pytest.mark.parametrize('saved', [b'\xff\xfe', b'', b'{}', bytes(range(256))])
-def test_bytes_that_are_no_state_are_refused(saved: bytes) -> None:
-    with pytest.raises(ConfigError, match='is not a saved state|no saved state|not a state'):
-        Simulation(idle(RUN)).restore(saved)
-
-
-def test_a_controller_that_keeps_its_state_to_itself_cannot_be_saved():
-    with pytest.raises(RunError, match=r'Controller has no snapshot\(\)'):
-        Simulation(idle(RUN), [Controller()]).snapshot()
 
 
 def test_a_command_takes_effect_at_the_next_tick_once():

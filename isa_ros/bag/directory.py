@@ -6,12 +6,15 @@ deleted. Other MCAP files beside them are never touched; with them in the direct
 could not be distinguished from them, so nothing is replaced.
 """
 
+import os
 from pathlib import Path
 
 from isa_ros.bag.metadata import FILE_NAME, own_files
 from isa_ros.errors import BagError
 
 _MCAP = '.mcap'
+_MOST_BYTES = 255 - len(f'_9999{_MCAP}')
+"""Of the name of a directory, so that file systems, which take 255, take its files' names."""
 
 
 def make_directory(directory: Path, overwrite: bool) -> None:
@@ -42,9 +45,15 @@ def files_to_replace(directory: Path, overwrite: bool) -> list[Path]:
     ------
     BagError
         There is a bag and ``overwrite`` is not set, or what is there is never replaced: it is
-        not a bag of this package, or has MCAP files that do not belong to it.
+        not a bag of this package, or has MCAP files that do not belong to it. Or the name is too
+        long for the files, which begin with it.
 
     """
+    length = len(os.fsencode(directory.name))
+    if length > _MOST_BYTES:
+        raise BagError(
+            f'{directory.parent / directory.name[:20]}...: the name has {length} bytes, must have '
+            f'at most {_MOST_BYTES}; the files in it are named NAME_0{_MCAP}')
     if not directory.exists():
         return []
     is_empty = directory.is_dir() and not any(directory.iterdir())

@@ -251,7 +251,7 @@ _COMMANDS = {
                 'complete a bag that was cut short, so that every reader opens it'),
     'report': (_report, commands.report, 'draw the figures of a bag on one page'),
     'view': (view_command.arguments, view_command.view,
-             'play a bag in a browser, with its machine in 3D'),
+             'show a run or play a bag in a browser, with its machine in 3D'),
     'bode': (response_arguments.bode, commands.bode,
              'measure the frequency response of a loop of an actuator'),
     'step': (response_arguments.step, commands.step,

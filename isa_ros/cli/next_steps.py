@@ -14,6 +14,7 @@ def next_steps(bag: Path) -> list[tuple[str, str]]:
     """Return the arguments of `isa` and what they do, in the order to try them."""
     return [
         (f'replay {shlex.quote(str(bag))}', 'simulate the bag again: the same bytes'),
+        (f'view {shlex.quote(str(bag))}', 'see the leg move in a browser'),
         ('params isa_v5', 'every parameter with unit, range and source'),
         (f'bringup leg --scenario drop --set supply.pressure_mpa=10 --out {OWN_RUN}',
          'the same drop with half the pressure'),

@@ -4,7 +4,8 @@ from functools import cache
 from types import FunctionType
 from typing import Any
 
-from isa_ros.core.kernel import BEFORE_COMPILING, Entry, Kernel, kernel
+from isa_ros.core.first_compilation import first_compilation
+from isa_ros.core.kernel import Entry, Kernel, kernel
 from isa_ros.core.kernel_cache import cache_of
 from isa_ros.core.kinds import Kind, RESULT_WORDS
 from isa_ros.core.words import put_results, result_kind, TABLE, type_of, value_at
@@ -22,8 +23,7 @@ def _type_of_function(function: Any, context: Any) -> Any:
 
 def dispatcher_of(own: Kernel) -> Any:
     """Return what numba compiles of a kernel."""
-    while BEFORE_COMPILING:
-        BEFORE_COMPILING.pop()()
+    first_compilation().begin()
     options = {name: value for name, value in own.targetoptions.items() if name != 'nopython'}
     compiled: Any = numba.njit(**options)(own.py_func)
     compiled._cache = cache_of(compiled, own.directory)

@@ -27,9 +27,6 @@ OPTIONS: dict[str, Any] = {
 IS_COMPILED = os.environ.get('NUMBA_DISABLE_JIT', '0') in ('', '0')
 """Whether kernels are machine code, and not the functions themselves."""
 
-BEFORE_COMPILING: list[Callable[[], object]] = []
-"""What is called once, when the first kernel is to be compiled."""
-
 
 class Kernel:
     """

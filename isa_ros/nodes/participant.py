@@ -32,8 +32,9 @@ class Participant:
         """
         Take part in one run after another until ``should_stop``; None: until a signal.
 
-        An exception of the controller is sent to the coordinator, whose run then ends with exit
-        code 3, and is raised.
+        An exception of the controller, also of its `start`, is sent to the coordinator with the
+        place where it was raised. The run then ends with this line and exit code 3, and this
+        method raises it. A setpoint that is refused ends the run only.
         """
         if should_stop is not None:
             self._end.spin(should_stop)

@@ -6,7 +6,7 @@ import sys
 import time
 from typing import Any, TextIO
 
-from isa_ros.core.kernel import BEFORE_COMPILING
+from isa_ros.core.first_compilation import first_compilation
 from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.value_text import UnknownValue
@@ -95,12 +95,8 @@ def reported_compilation(
         if 'numba' in sys.modules:
             watch()
         else:       # not before a kernel is compiled: loading it takes longer than a start
-            BEFORE_COMPILING.append(watch)
-        try:
-            yield
-        finally:
-            if watch in BEFORE_COMPILING:
-                BEFORE_COMPILING.remove(watch)
+            stack.enter_context(first_compilation().awaited_by(watch))
+        yield
 
 
 def _reported_to(report: CompilationReport) -> AbstractContextManager[object]:

@@ -28,7 +28,7 @@ from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import emergency_stops_of
-from isa_ros.tick.exchange import Rows, Transport
+from isa_ros.tick.exchange import Rows, RowSink, Transport
 from isa_ros.tick.source import ScheduledSource, Source
 from isa_ros.tick.tick_loop import ignore, TickLoop
 from isa_ros.tick.trips import TripLog
@@ -173,12 +173,13 @@ def record(
         session: Session, transport: Transport, surroundings: Surroundings,
         outlets: Callable[[Sequence[Topic]], Outlets], report: Report | None,
         should_stop: Callable[[], bool], requests: Requests | None = None,
-        warn: Callable[[str], object] = _no_warning) -> None:
+        warn: Callable[[str], object] = _no_warning, sinks: Sequence[RowSink] = ()) -> None:
     """
     Join the participants of ``transport``, run, and record every sample.
 
     ``outlets`` creates the publishers for the topics of supplies and body. A reset starts again
-    at t = 0, with another bag beside the first. ``warn`` prints a line.
+    at t = 0, with another bag beside the first. ``warn`` prints a line; ``sinks`` take the rows
+    too.
     """
     run, laps = session.run, session.request.laps
     lap = ignore if laps is None else laps.lap
@@ -209,7 +210,8 @@ def record(
                            run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
                 loop.sinks = (
-                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published), trip_log)
+                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published), trip_log,
+                    *sinks)
                 coordinator = Coordinator(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),

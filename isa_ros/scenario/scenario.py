@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.config.runs.controller_config import CONTROLLERS, controllers_at
+from isa_ros.config.runs.low_supply import low_supplies
 from isa_ros.config.runs.run_config import ROBOTS, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
@@ -61,9 +62,9 @@ class Scenario:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return lines to print before the run."""
-        return (*self.limited, *(
-            f'{self.run.source}: {line}' for body in self.run.bodies
-            for line in body.warnings(self.run.step_ns)))
+        of_run = (*low_supplies(self.run), *(
+            line for body in self.run.bodies for line in body.warnings(self.run.step_ns)))
+        return (*self.limited, *(f'{self.run.source}: {line}' for line in of_run))
 
     @property
     def duration_s(self) -> float | None:

@@ -20,9 +20,9 @@ def save(
         overwrite: bool) -> Path:
     """Write the bag of a result; as `Result.save`."""
     messages = ResultMessages(scenario, log)
+    messages.refuse_misfits()
     with BagWriter(directory, messages.topics, provenance_of(scenario, bodies=bodies),
-                   overwrite,
-                   scenario.run.record.storage) as bag:
+                   overwrite, scenario.run.record.storage) as bag:
         messages.record(bag)
     return directory
 
@@ -36,6 +36,11 @@ class ResultMessages:
         self._packer = packer_of(self._run, self._rows.published)
         self._thinning = Thinning(self._run.record, self._packer.topics)
         self.topics: tuple[Topic, ...] = tuple(self._thinning.topics)
+
+    def refuse_misfits(self) -> None:
+        """Refuse what `record` of the run leaves out; raises as `RecordConfig.refuse_misfits`."""
+        self._run.record.refuse_misfits(
+            [topic.name for topic in self._packer.topics], self._run.source)
 
     def record(self, recorder: Recorder) -> None:
         """Pass every sample to a recorder."""

@@ -203,6 +203,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
         BagError
             The directory already exists and ``overwrite`` is not set, or it cannot be created; or
             the result was read from a bag.
+        ConfigError
+            `record` of the run leaves out a topic that does not exist, or that a replay needs.
         RunError
             The bag cannot be written.
 

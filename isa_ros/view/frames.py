@@ -36,11 +36,18 @@ class Gathering:
 
     def __init__(self, n_channels: int) -> None:
         self._rows = np.empty((MOST, n_channels), np.float32)
-        self._first = self._n = 0
+        self._first = self._next = self._n = 0
         self._every = 1
 
     def row(self, tick: int) -> NDArray[np.float32] | None:
-        """Return the row to be filled with the sample of a tick, the next one; None: left out."""
+        """
+        Return the row to be filled with the sample of a tick; None: it is left out.
+
+        If it is not the next tick, the samples before it are forgotten.
+        """
+        if tick != self._next:
+            self.take()
+        self._next = tick + 1
         if not self._n:
             self._first = tick
         if (tick - self._first) % self._every:

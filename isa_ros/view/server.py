@@ -28,7 +28,8 @@ _HTML, _SCRIPT, _STYLE = 'text/html', 'text/javascript', 'text/css'
 _FILES = {
     '': (_BROWSER / 'index.html', _HTML), 'page.css': (_BROWSER / 'page.css', _STYLE),
     'signals.js': (_THINNING, _SCRIPT),
-    **{name: (_BROWSER / name, _SCRIPT) for name in ('scene.js', 'plots.js', 'page.js')}}
+    **{name: (_BROWSER / name, _SCRIPT)
+       for name in ('scene.js', 'plots.js', 'controls.js', 'page.js')}}
 _HEADERS = {
     'Content-Security-Policy': (
         "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "

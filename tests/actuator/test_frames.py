@@ -7,7 +7,8 @@ from isa_ros.errors import ParameterError
 import numpy as np
 import pytest
 from scipy import stats
-from tests.actuator.test_link import actuator, ALARM, line, link_of, linked, N, STEPS
+from tests.actuator.linked import actuator, line, link_of, linked, STEPS
+from tests.actuator.test_link import ALARM, N
 from tests.sheets import setpoint
 
 KEY = np.uint64(link_key(5, 'knee'))

@@ -1,59 +1,22 @@
 """The link of an actuator: when frames arrive, which are lost, and what the REU makes of it."""
 
-from dataclasses import replace
 import math
-from typing import Any
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator import link as links
-from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.frames import DOWN, leaves, LINE, put_frame, SLOTS, take_frame
-from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.actuator.link import link_key, link_record, LINK_STATE, LinkSheet
-from isa_ros.actuator.rows import Memory
-from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.frames import DOWN, leaves, put_frame, SLOTS, take_frame
+from isa_ros.actuator.link import link_key, link_record
 from isa_ros.actuator.timing import Timing
-from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.core.conditions import BITS, conditions
-from isa_ros.core.record import rows_of
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_QUICK_STOP, HAS_SETPOINT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.reu.cascade import REU_STATE
 import numpy as np
 import pytest
 from scipy import stats
-from tests.sheets import actuator_sheet, own_load, setpoint, smart_actuator
+from tests.actuator.linked import actuator, line, link_of, linked, STEPS
+from tests.sheets import setpoint
 
-MODEL = 'isa_v5'
-TICK = Timing(1_000_000, 120_000)
-STEPS = 50     # of the plant in a tick
 ALARM = 1e-6
 """Probability with which a check would refuse numbers that are truly random."""
 N = 20_000
-
-
-def link_of(**values: float) -> LinkSheet:
-    """Return the sheet of a link with a cycle of a tick, unless given otherwise."""
-    absent = dict.fromkeys(
-        ('delay_cycles', 'jitter_us', 'loss', 'burst_loss', 'burst_frames', 'duplicates',
-         'reordered', 'watchdog_ms'), 0.0) | {'cycle_ms': 1.0}
-    return LinkSheet(kind='ethercat', **(absent | values))
-
-
-def linked(**values: float) -> ActuatorSheet:
-    """Return the sheet of an actuator behind a link."""
-    return replace(actuator_sheet(MODEL), link=link_of(**values))
-
-
-def actuator(sheet: ActuatorSheet | None = None, timing: Timing = TICK) -> SmartActuator:
-    """Return an actuator with a mass of its own; None: without a link."""
-    return smart_actuator(MODEL, 'mass', timing=timing, sheet=sheet)
-
-
-def line() -> Any:
-    """Return an empty `LINE`."""
-    return rows_of(1, LINE)[0]
 
 
 def sent_frames(n: int, **values: float) -> tuple[np.ndarray, np.ndarray]:
@@ -297,159 +260,6 @@ def test_a_link_is_not_changed_into_one_that_cannot_be(values, message):
         own.tune(values)
 
 
-def test_the_watchdog_trips_at_its_step_and_recovers_with_the_next_frame():
-    """Frames to 10 ms, then none: lost 3.5 ms later, at step 500 + 175; back at 20 ms."""
-    own = actuator(linked(watchdog_ms=3.5))
-    link, states = own.memory.constants['link'], []
-    for k in range(25):
-        link['loss'] = 1.0 if 11 <= k < 20 else 0.0
-        own.tick()
-        states.append((int(own.memory.reu['link_lost'][0]),
-                       int(own.memory.reu['link_lost_step'][0])))
-    assert states[:13] == [(0, 0)] * 13
-    assert states[13:20] == [(1, 675)] * 7
-    assert states[20:] == [(0, 675)] * 5
-
-
-def test_the_watchdog_is_exact_within_a_plant_step():
-    link, reu = link_record(link_of(watchdog_ms=3.5)), rows_of(1, REU_STATE)[0]
-    state = rows_of(1, LINK_STATE)[0]
-    state.last_frame = 500
-    for watch in (links.watch, links.watch.py_func):
-        for step, is_lost in ((674, 0), (675, 1), (800, 1)):
-            watch(step, link, state, reu)
-            assert (reu.link_lost, reu.link_lost_step) == (is_lost, 675 * is_lost)
-        state.last_frame = 801
-        watch(801, link, state, reu)
-        assert reu.link_lost == 0
-        state.last_frame, reu.link_lost_step = 500, 0
-
-
-def test_a_lost_link_trips_until_the_next_frame():
-    """
-    Frames to 10 ms, the watchdog at 13.5 ms: it stops, though frames come again, until it stands.
-
-    Then it goes on to its setpoint with 0.1 m/s. The REU looks at its conversions, every 5 plant
-    steps from step 1 on: the first later than step 675 is 676.
-    """
-    own = actuator(linked(watchdog_ms=3.5))
-    link = own.memory.constants['link']
-    own.accept(setpoint(position=0.06))
-    trips = []
-    for k in range(25):
-        link['loss'] = 1.0 if 11 <= k < 20 else 0.0
-        own.tick()
-        trips.append(conditions(own.sample.trips))
-    assert trips == [[]] * 13 + [['link_lost']] * 7 + [[]] * 5
-    protection = own.memory.reu['protection'][0]
-    assert protection['trip_since'][BITS['link_lost']] == 676
-    for _ in range(60):
-        own.tick()
-        assert own.sample.position < 0.053
-    assert not own.memory.reu['status'][0]['is_stopping']
-    for _ in range(120):
-        before = float(own.sample.position_reference)
-        own.tick()
-        assert own.sample.position_reference - before < 1.001e-4  # 0.1 m/s for a tick of 1 ms
-    assert own.sample.position_reference == 0.06
-
-
-def test_a_link_without_watchdog_is_never_lost():
-    own = actuator(linked(loss=1.0))
-    for _ in range(20):
-        own.tick()
-    assert own.memory.reu['link_lost'][0] == 0
-
-
-def exchanged(is_compiled: bool) -> bytes:
-    """Return a memory after 30 ticks of frames alone, by kernels or by their Python source."""
-    own = actuator(linked(**LOSSY))
-    memory = Memory(*(rows.view(np.recarray) if rows.dtype.names else rows for rows in own.memory))
-    kernels = [links.hand_over, links.exchange_frames, links.send_sample, links.receive_samples]
-    hand_over, exchange, send, receive = (
-        kernels if is_compiled else [kernel.py_func for kernel in kernels])
-    for k in range(30):
-        own.accept(setpoint(position=0.05 + 1e-4 * k))
-        hand_over(50 * k, 0, memory)
-        for step in range(STEPS * k, STEPS * (k + 1)):
-            memory.samples.position[0] = step
-            is_sampled = step > STEPS * k and step % (STEPS // 2) == 0
-            exchange(step, is_sampled, 0, memory)
-        send(STEPS * (k + 1), 0, memory)
-        receive(STEPS * (k + 1), 0, memory)
-    assert memory.observed.position[0] > 0.0 and memory.applied.due_step[0] > 0
-    return b''.join(rows.tobytes() for rows in memory)
-
-
-def test_compiled_frames_equal_their_python_source():
-    assert exchanged(True) == exchanged(False)
-
-
-LOSSY = {'cycle_ms': 0.5, 'delay_cycles': 2, 'jitter_us': 300.0, 'loss': 0.3, 'watchdog_ms': 3.0}
-
-
-def driven(own: SmartActuator, ticks: range) -> list[bytes]:
-    """Advance with a setpoint at every tick; return what is sent, applied and observed."""
-    seen = []
-    for k in ticks:
-        own.accept(setpoint(position=0.05 + 1e-4 * (k % 7)))
-        own.tick()
-        memory = own.memory
-        seen.append(b''.join(rows.tobytes() for rows in (
-            memory.samples, memory.observed, memory.applied, memory.sent, memory.reu)))
-    return seen
-
-
-def test_a_restored_link_goes_on_with_its_frames_on_their_way():
-    whole, first = actuator(linked(**LOSSY)), actuator(linked(**LOSSY))
-    expected = driven(whole, range(60))
-    driven(first, range(31))
-    assert first.memory.links['down']['count'][0] > 0
-    second = actuator(linked(**LOSSY))
-    second.restore(first.snapshot())
-    assert driven(second, range(31, 60)) == expected[31:]
-    whole.start(*[0.5 * actuator_sheet(MODEL).plant.drive.stroke, 0.0, 20.7e6, 0.0])
-    assert whole.memory.links['down']['count'][0] == 0
-
-
-def test_a_snapshot_has_frames_only_behind_a_link():
-    direct, behind = actuator(), actuator(linked())
-    frames = sum(getattr(behind.memory, name).nbytes for name in (
-        'links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed'))
-    frames += behind.tuning.nbytes - direct.tuning.nbytes   # what is tuned is on its way too
-    assert behind.tuning.nbytes > direct.tuning.nbytes
-    assert len(behind.snapshot()) - len(direct.snapshot()) == frames
-
-
-@pytest.mark.parametrize('field, value', [('first', SLOTS), ('first', -1), ('count', 99)])
-def test_a_saved_state_with_an_impossible_line_is_refused(field, value):
-    """Its slots would lie in other memory."""
-    own = actuator(linked())
-    own.memory.links['up'][field] = value
-    with pytest.raises(ConfigError, match=f'{field} = {value} of a link, must be 0 to'):
-        own.restore(own.snapshot())
-
-
-def test_actuators_of_one_group_have_the_frames_that_they_have_alone():
-    load, x = own_load(MODEL, 'mass'), 0.05
-    configs = [ActuatorConfig(name, MODEL, 'default', sheet, load, x) for name, sheet in (
-        ('hip', linked(**LOSSY)), ('knee', actuator_sheet(MODEL)), ('toe', linked(**LOSSY)))]
-    group = ActuatorGroup(configs, TICK)
-    alone = [SmartActuator(config, TICK) for config in configs]
-    ports = group._memory.ports.copy()
-    for k in range(40):
-        for own in (*group.actuators, *alone):
-            own.accept(setpoint(position=0.05 + 1e-4 * (k % 7)))
-        group.advance(ports)
-        for own in alone:
-            own.tick()
-        for name in ('observed', 'applied', 'sent', 'links'):
-            assert getattr(group._memory, name).tobytes() == b''.join(
-                getattr(own.memory, name).tobytes() for own in alone), (k, name)
-    hip, _, toe = group.observed['age']
-    assert {hip, toe} != {0.0} and group._memory.links['down'][0] != group._memory.links['down'][2]
-
-
 @pytest.mark.parametrize('values, message', [
     ({'cycle_ms': 0.01}, 'cycle_ms = 0.01 ms, must be >= the plant step 0.02 ms'),
     ({'delay_cycles': 1.5}, 'delay_cycles = 1.5 cycles, must be a whole number'),
@@ -475,91 +285,3 @@ def test_the_record_is_in_nanoseconds():
 def test_a_cycle_of_the_tick_needs_a_run():
     with pytest.raises(ConfigError, match='link.cycle_ms = 0 ms is the tick of a run'):
         link_record(link_of(cycle_ms=0.0))
-
-
-DEAD = {'link.loss': 1.0}
-
-
-def asked(kinds: int, is_enabled: int = 0) -> np.void:
-    command: np.void = np.zeros(1, COMMAND)[0]
-    command['kinds'], command['is_enabled'] = kinds, is_enabled
-    return command
-
-
-def test_a_dead_link_answers_no_success_and_its_old_commands_do_not_act():
-    """The quick stop of a broken cable does not come 100 ms after it is mended."""
-    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
-    for _ in range(20):
-        own.tick()
-    done, answer = own.request(asked(HAS_ENABLE, 1), 'enabled')
-    assert done and answer.startswith('enabled: handed to the link at t = 0.020000 s')
-    own.tick()
-    own.tick()
-    own.tune(DEAD)
-    for _ in range(12):
-        own.tick()
-    state, observed = own.memory.reu[0]['status']['state'], own.memory.observed[0]
-    assert observed['is_stale'] == 1.0 and observed['age'] >= 0.01
-    done, answer = own.request(asked(HAS_QUICK_STOP), 'quick stop')
-    assert not done and answer.startswith('quick stop: the link is lost: the last sample is 0.01')
-    for _ in range(11):
-        own.tick()
-    assert observed['commands_dropped'] == 1.0 and own.memory.outbox[0]['kinds'] == 0
-    own.tune({'link.loss': 0.0})
-    for _ in range(20):
-        own.tick()
-    assert own.memory.reu[0]['status']['state'] == state, 'no quick stop'
-    assert observed['is_stale'] == 0.0 and observed['age'] < 0.01
-
-
-@pytest.mark.parametrize('fresh', [True, False])
-def test_a_fresh_setpoint_survives_where_an_old_request_is_dropped(fresh):
-    """Each has its own age: a setpoint every tick does not carry an old quick stop along."""
-    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
-    own.tune(DEAD)
-    own.accept(asked(HAS_QUICK_STOP))
-    for k in range(15):
-        if fresh or k == 0:
-            own.accept(setpoint(position=0.05))
-        own.tick()
-    assert int(own.memory.outbox[0]['kinds']) == (HAS_SETPOINT if fresh else 0)
-    assert own.memory.observed[0]['commands_dropped'] == (1.0 if fresh else 2.0)
-
-
-def test_without_a_watchdog_a_command_waits_as_long_as_it_takes():
-    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=0.0))
-    own.tune(DEAD)
-    own.accept(asked(HAS_QUICK_STOP))
-    for _ in range(40):
-        own.tick()
-    assert int(own.memory.outbox[0]['kinds']) == HAS_QUICK_STOP
-    assert own.memory.observed[0]['is_stale'] == 1.0, 'older than ten cycles'
-
-
-def test_lost_frames_are_counted_each_way():
-    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, loss=0.3))
-    for _ in range(200):
-        own.tick()
-    link, observed = own.memory.links[0], own.memory.observed[0]
-    assert 30 < link['up']['lost'] < 90 and 30 < link['down']['lost'] < 90
-    assert observed['frames_lost_up'] == link['up']['lost']
-    assert 0 <= link['down']['lost'] - observed['frames_lost_down'] < 10
-
-
-def test_a_frozen_reu_sends_no_frames_and_takes_none():
-    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
-    for _ in range(10):
-        own.tick()
-    own.tune({'reu.frozen': 1.0})
-    lost = int(own.memory.links[0]['down']['lost'])
-    for _ in range(30):
-        own.accept(setpoint(position=0.03))
-        own.tick()
-    assert own.memory.observed[0]['is_stale'] == 1.0
-    assert own.memory.observed[0]['age'] == pytest.approx(0.03, abs=2e-3)
-    assert own.memory.links[0]['down']['lost'] > lost + 25
-    assert not own.memory.observed[0]['trips'], 'its watchdog has acted, and cannot tell'
-    own.tune({'reu.frozen': 0.0})
-    for _ in range(4):
-        own.tick()
-    assert conditions(own.memory.observed[0]['trips']) == ['watchdog']

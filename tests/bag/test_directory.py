@@ -129,3 +129,13 @@ def test_a_directory_that_cannot_be_made_is_refused_by_name(tmp_path: Path) -> N
     (tmp_path / 'file').write_bytes(b'')
     with pytest.raises(BagError, match='file/rig: cannot be created, Not a directory'):
         BagWriter(tmp_path / 'file' / 'rig', TOPICS, PROVENANCE)
+
+
+@pytest.mark.parametrize('name', ['b' * 246, '\u00e9' * 123], ids=['letters', 'bytes'])
+def test_a_name_that_its_files_cannot_have_is_refused_before_anything_is_made(tmp_path, name):
+    """A file NAME_9999.mcap has 10 bytes more, and a file system takes 255."""
+    with pytest.raises(BagError, match='the name has 246 bytes, must have at most 245; the files'):
+        BagWriter(tmp_path / name, TOPICS, PROVENANCE)
+    assert not [*tmp_path.iterdir()]
+    record(tmp_path / name[:-1], 3)
+    assert Bag(tmp_path / name[:-1]).is_whole

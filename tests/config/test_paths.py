@@ -25,7 +25,7 @@ def test_a_file_of_the_user_comes_first(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_an_unknown_file_is_answered_with_the_shipped_ones() -> None:
     with pytest.raises(
-            ConfigError, match='legs.yaml: no such file; shipped: crane.yaml, .*hyq_leg'):
+            ConfigError, match='legs.yaml: no such file; shipped: cooled_station.yaml, .*hyq_leg'):
         paths.find('legs.yaml', paths.CONFIG)
 
 

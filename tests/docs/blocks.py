@@ -4,10 +4,11 @@ The blocks of a page, run in the order in which a reader would.
 ``bash`` blocks are run by a shell in which `./isa` and `python` are those of this environment,
 ``python`` blocks share one namespace. A block of any kind whose first line is a comment with the
 name of a file is written to it, and a ``yaml`` block to NAME.yaml. A ``text`` block is the output
-of the block above it, in which ``...`` stands for anything.
+of the block above it, in which ``...`` stands for anything. Indented lines that begin with a
+command are a block ``command`` of the shell.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 import contextlib
 from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
 import io
@@ -17,12 +18,17 @@ import re
 import signal
 import subprocess
 import sys
+import textwrap
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
 TIMEOUT_S = 300.0
 _BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-_FILE = re.compile(r'(?:# |/\* )(\w+\.\w+)(?: \*/)?\n')
+_FILE = re.compile(r'(?:# |/\* |<!-- )(\w+\.\w+)(?: \*/| -->)?\n')
+_INDENTED = re.compile(r'(?<=\n\n)((?: {4,}.*\n)+)')
+_COMMANDS = (
+    'isa', 'python', 'ros2', 'pip', 'sudo', 'source', 'export', 'git', 'unshare', 'nsenter',
+    'modprobe', 'ss', 'sed', 'tshark', 'smart_manifold', '.venv/bin/python')
 _NAME = re.compile(r'name: (\w+)\n')
 
 
@@ -36,14 +42,36 @@ class Block(NamedTuple):
 
 
 def blocks_of(page: str) -> list[Block]:
-    """Return the fenced blocks of a page, in order."""
-    return [Block(found[1], found[2], page[:found.start(2)].count('\n') + 1)
-            for found in _BLOCK.finditer(page)]
+    """Return the fenced blocks of a page and its indented commands, in order."""
+    fenced = [Block(found[1], found[2], page[:found.start(2)].count('\n') + 1)
+              for found in _BLOCK.finditer(page)]
+    between = _BLOCK.sub(lambda found: '\n' * found[0].count('\n'), page)
+    indented = [
+        Block('command', textwrap.dedent(found[1]), between[:found.start()].count('\n') + 1)
+        for found in _INDENTED.finditer(between) if _is_command(found[1].strip())]
+    return sorted([*fenced, *indented], key=lambda block: block.line)
 
 
-def run(page: str, folder: Path) -> int:
+def _is_command(text: str) -> bool:
+    first = text.removeprefix('$ ').removeprefix('./').split()[0]
+    return first in _COMMANDS
+
+
+def first_line(block: Block) -> str:
+    """Return the line by which a block is named, without its comment."""
+    return re.split(r'\s+#', block.text.partition('\n')[0])[0].strip()
+
+
+def is_part(block: Block) -> bool:
+    """Claim that a block is a part of a file, which cannot be used alone."""
+    return block.kind in ('yaml', 'xml', 'cmake') and not _own_file(block)
+
+
+def run(page: str, folder: Path, left_out: Collection[str] = (), has_parts: bool = False) -> int:
     """
-    Run the blocks of a page in an empty folder; return how many were run or written.
+    Run the blocks of a page in a folder; return how many were run or written.
+
+    Blocks whose first line is in ``left_out`` are not; nor parts of files, where a page has them.
 
     Raises
     ------
@@ -57,6 +85,8 @@ def run(page: str, folder: Path) -> int:
     printed: str | None = None
     count = 0
     for block in blocks_of(page):
+        if first_line(block) in left_out or (has_parts and is_part(block)):
+            continue
         if block.kind == 'text':
             assert printed is not None, f'line {block.line}: an output without a block above it'
             _compare(block, printed)
@@ -69,17 +99,30 @@ def run(page: str, folder: Path) -> int:
 
 def _result(block: Block, folder: Path, names: dict[str, object]) -> str | None:
     """Return what a block prints; None: it is a file."""
-    own = _FILE.match(block.text) or (_NAME.match(block.text) if block.kind == 'yaml' else None)
-    if own:
-        name = own[1] if '.' in own[1] else f'{own[1]}.yaml'
+    if name := _own_file(block):
         (folder / name).write_text(block.text)
         return None
-    if block.kind == 'bash':
+    if block.kind in ('bash', 'command'):
         return _of_shell(block, folder)
     assert block.kind == 'python', f'line {block.line}: a block of {block.kind} cannot be run'
     with _within(folder), contextlib.redirect_stdout(io.StringIO()) as out:
         exec(compile(block.text, f'line {block.line} of the page', 'exec'), names)
     return out.getvalue()
+
+
+def _own_file(block: Block) -> str | None:
+    """Return the name of the file that a block is."""
+    if own := _FILE.match(block.text):
+        return own[1]
+    own = _NAME.match(block.text) if block.kind == 'yaml' else None
+    return f'{own[1]}.yaml' if own else None
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """Return that of a page's commands: `isa`, `./isa` and `python` are those of this test."""
+    path = os.pathsep.join([str(folder), str(Path(sys.executable).parent), os.environ['PATH']])
+    return {**os.environ, 'PYTHONPATH': str(ROOT), 'ROOT': str(ROOT), 'PATH': path,
+            'ROS_LOG_DIR': str(folder / 'log')}
 
 
 def _of_shell(block: Block, folder: Path) -> str:
@@ -88,9 +131,8 @@ def _of_shell(block: Block, folder: Path) -> str:
     with out.open('w+') as printed:
         shell = subprocess.Popen(
             ['bash', '-euo', 'pipefail', '-c', block.text], cwd=folder, start_new_session=True,
-            stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.PIPE, text=True, env={
-                **os.environ, 'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder / 'log'),
-                'PATH': f'{Path(sys.executable).parent}{os.pathsep}{os.environ["PATH"]}'})
+            stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.PIPE, text=True,
+            env=environment(folder))
         try:
             code = shell.wait(TIMEOUT_S)
         except subprocess.TimeoutExpired:

@@ -191,6 +191,31 @@ def test_what_contradicts_itself_is_refused_with_both_numbers(values, message):
     assert message in str(refused.value)
 
 
+def test_a_drop_may_be_rounded_as_sheets_print_it_and_a_wall_grow_by_less_than_its_hose():
+    """0.5 % below a smooth hose's is the rounding of three digits; all of a hose is refused."""
+    smooth = smooth_drop(SHEET, 40.0 * LPM) / 1e6
+    assert row(rated_lpm=40.0, rated_drop_mpa=0.996 * smooth).fittings == 0.0
+    with pytest.raises(ParameterError, match='that of a smooth'):
+        replace(SHEET, rated_lpm=40.0, rated_drop_mpa=0.994 * smooth)
+    held = SHEET.bore / 1e-6
+    replace(SHEET, wall=ExpandingWall(expansion_ml_per_m=0.9999 * held, pressure_mpa=20.0))
+    with pytest.raises(ParameterError, match='wall.expansion_ml_per_m'):
+        replace(SHEET, wall=ExpandingWall(expansion_ml_per_m=held, pressure_mpa=20.0))
+
+
+def test_air_is_in_the_hose_and_not_in_what_stands_for_its_wall():
+    """C5 and C12 of 157 ml: dV/dP grows by V P/(p_air beta) below the atmosphere; free air a V."""
+    own, plain, volume = row(), oil(), math.pi / 4.0 * 1e-4 * 2.0
+    p, elastance, _ = hose_contents(lack(-5e4, 0.0, soft_volume(own), own), 0.0, own)
+    assert p == pytest.approx(-5e4, rel=1e-9, abs=0.0)
+    assert 1.0 / elastance - soft_volume(own) / own.beta == pytest.approx(
+        volume * 5e4 / (plain.p_air * plain.beta), rel=1e-9, abs=0.0)
+    plain.air = 0.02
+    with_air = hoses_record(SHEET, plain)
+    assert with_air.air * soft_volume(with_air) == pytest.approx(
+        0.02 * volume, rel=1e-12, abs=0.0)
+
+
 def test_a_wall_that_makes_oil_stiffer_is_refused():
     plant = actuator_sheet('isa_v5').plant
     with pytest.raises(ParameterError, match=(

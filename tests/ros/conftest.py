@@ -7,6 +7,7 @@ import pytest
 from rclpy.node import Node
 from tests.ros.domains import held_domain, observing
 from tests.ros.faults import WHEEL_SINE, with_timeout
+from tests.ros.lone_participant import Participant
 from tests.ros.started import bringup, DEADLINE_S
 
 
@@ -22,6 +23,15 @@ def observer(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
     """Return a user's node in the domain."""
     with observing(monkeypatch) as node:
         yield node
+
+
+@pytest.fixture
+def member(observer: Node) -> Iterator[Participant]:
+    """Return a participant in a run that has begun."""
+    node = Node('kfe', context=observer.context, enable_rosout=False,
+                start_parameter_services=False)
+    yield Participant(node)
+    node.destroy_node()
 
 
 @pytest.fixture(scope='session')

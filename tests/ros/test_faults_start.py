@@ -1,6 +1,7 @@
 """A participant that does not start, or fails with an error of its own, is reported."""
 
 from pathlib import Path
+import re
 import signal
 
 import pytest
@@ -73,8 +74,9 @@ def test_an_actuator_that_raises_is_named(domain, tmp_path, break_actuators):
     bag = tmp_path / 'bag'
     with bringup(bag, config=RIG) as run:
         assert run.exit_code() == 3
-    assert last_line(run) == (
-        'isa: rotor: refused tick 100: RuntimeError: an error of its own')
+    assert re.fullmatch(
+        r'isa: rotor: refused tick 100: RuntimeError: an error of its own \(\w+\.py:\d+\)',
+        last_line(run))
     assert assert_replays(bag) == 100
 
 

@@ -5,133 +5,28 @@ Both ends have a real node but no partner: what arrives is put into their mailbo
 of the test, so that no race of the middleware decides.
 """
 
-from collections import deque
-from collections.abc import Iterable, Iterator
 
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
-from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
-from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
-from isa_ros.run.wire.parts import actuator_parts, Parts
+from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.parts import actuator_parts
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import (
-    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, Step)
+    encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
+    encode_tick)
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
 from rclpy.node import Node
 from tests.ros.lockstep.participants import Outside, rows_of_two
+from tests.ros.lone_participant import done, NAMES, Post, ROSTER, RUN, tick
 from tests.ros.started import DEADLINE_S
 
 pytestmark = pytest.mark.ros
 
-RUN = 4711
-NAMES = ('haa', 'kfe')
-ROSTER = Roster(NAMES, ['supply'], {})
 LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.05)
-
-
-class Post:
-    """A mailbox that holds what a test puts into it, and nothing else ever arrives."""
-
-    def __init__(self, messages: Iterable[bytes] = ()) -> None:
-        self.messages = deque(messages)
-
-    def wait(self, timeout_s: float) -> bytes | None:
-        """Return the next message at once."""
-        return self.messages.popleft() if self.messages else None
-
-    take = wait
-
-    def count_senders(self) -> int:
-        """Return 1, a coordinator."""
-        return 1
-
-
-class Counting:
-    """A role that counts what it has to do."""
-
-    digest = b'same'
-    is_actuator = True
-
-    def __init__(self) -> None:
-        self.ticks = self.snapshots = self.published = 0
-
-    def check(self, step: Step) -> None:
-        """Refuse what no actuator of the run can execute."""
-        step.refuse_tick(len(NAMES), NAMES.index('kfe'))
-
-    def start(self, step: Step, index: int) -> Parts:
-        """Begin anew."""
-        self.ticks = 0
-        return [b'start']
-
-    def advance(self, step: Step) -> Parts:
-        """Count a tick."""
-        self.ticks += 1
-        return [b'tick %d' % self.ticks]
-
-    def publish(self) -> None:
-        """Count the first messages."""
-        self.published += 1
-
-    def serve(self) -> None:
-        """Take nothing."""
-
-    def snapshot(self) -> bytes:
-        """Count a snapshot."""
-        self.snapshots += 1
-        return b'after %d' % self.ticks
-
-    def restore(self, snapshot: bytes) -> Parts:
-        """Go on from where it was taken."""
-        self.ticks = int(snapshot.split()[1])
-        return [b'restored']
-
-
-class Participant:
-    """A participant without a thread, bound to `RUN`, and its answers."""
-
-    def __init__(self, node: Node) -> None:
-        self.role = Counting()
-        self._end = ParticipantEnd(node, self.role)
-        self.answers: list[Answer] = []
-        self._end._send = lambda data: self.answers.append(decode_answer(data))
-        starts = np.zeros(2, START)
-        self.answers_to(
-            encode_hello(RUN, 1, 1_000_000, starts, ROSTER),
-            encode_begin(RUN, [None, self.identity]))
-
-    @property
-    def identity(self) -> bytes:
-        """Return what names this node."""
-        return self._end._identity
-
-    def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
-        """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
-        before = len(self.answers)
-        for step in steps:
-            self._end._receive(step)
-        return [(one.kind, one.tick, one.is_repeated) for one in self.answers[before:]]
-
-
-@pytest.fixture
-def member(observer: Node) -> Iterator[Participant]:
-    """Return a participant in a run that has begun."""
-    node = Node('kfe', context=observer.context, enable_rosout=False,
-                start_parameter_services=False)
-    yield Participant(node)
-    node.destroy_node()
-
-
-def tick(number: int, run: int = RUN) -> bytes:
-    return encode_tick(run, number, rows_of_two(), has_controllers=False)
-
-
-def done(number: int, is_repeated: bool = False) -> tuple[AnswerKind, int, bool]:
-    return AnswerKind.DONE, number, is_repeated
 
 
 def test_a_repeat_of_the_last_step_is_answered_again_without_another_tick(member):
@@ -183,6 +78,7 @@ ODD_STEPS = {
     'another version': altered(tick(0), KIND - 2, b'\x63'),
     'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER)[:-9],
     'a begin of others': encode_begin(RUN, [b'another']),
+    'a change of others': encode_change(RUN, -1, {}, 1),
     'a save of others': encode_restore(RUN, -1, 5, [b'after 5']),
     'a tick of one actuator': encode_tick(RUN, 0, Rows(1, Outside(False)), has_controllers=False)}
 

@@ -1,26 +1,16 @@
 """Whose run an actuator takes part in, and what it looks at before a tick."""
 
-from collections.abc import Iterator
 from types import SimpleNamespace
 
 from isa_ros.core.signals import START
+from isa_ros.errors import SetpointError
 from isa_ros.run.wire.answers import AnswerKind
 from isa_ros.run.wire.steps import encode_hello
 import numpy as np
 import pytest
-from rclpy.node import Node
-from tests.ros.test_lockstep_strangers import done, Participant, Post, ROSTER, RUN, tick
+from tests.ros.lone_participant import done, Post, ROSTER, RUN, tick
 
 pytestmark = pytest.mark.ros
-
-
-@pytest.fixture
-def member(observer: Node) -> Iterator[Participant]:
-    """Return a participant in a run that has begun."""
-    node = Node('kfe', context=observer.context, enable_rosout=False,
-                start_parameter_services=False)
-    yield Participant(node)
-    node.destroy_node()
 
 
 @pytest.mark.parametrize(('n_coordinators', 'expected'), [
@@ -35,6 +25,18 @@ def test_a_run_whose_coordinator_is_gone_is_left_for_another(
     (kind, _, is_repeated), = member.answers_to(hello)
     assert (kind, is_repeated) == (expected, False)
     assert member.answers_to(tick(0)) == ([done(0)] if expected is AnswerKind.BUSY else [])
+
+
+def test_one_that_refuses_to_start_is_not_in_the_run(member, monkeypatch):
+    """It answers each hello with the reason, and none with the parts of a start."""
+    def refused(*_: object) -> None:
+        raise SetpointError('no such leg')
+    monkeypatch.setattr(member.role, 'start', refused)
+    monkeypatch.setattr(member._end, '_mailbox', Post())
+    hellos = [encode_hello(RUN + 1, k, 1_000_000, np.zeros(2, START), ROSTER) for k in (1, 2)]
+    assert member.answers_to(*hellos) == [
+        (AnswerKind.REFUSED, 1, False), (AnswerKind.REFUSED, 2, False)]
+    assert [answer.parts for answer in member.answers[-2:]] == [[b'no such leg']] * 2
 
 
 def test_what_has_arrived_is_taken_before_each_tick(member, monkeypatch):

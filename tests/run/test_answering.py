@@ -22,7 +22,7 @@ from isa_ros.run.wire.steps import decode_step, encode_save, encode_tick
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
-from tests.actuator.test_link import link_of
+from tests.actuator.linked import link_of
 from tests.run.test_wire import filled
 
 RUN, INDEX, N = 0x1234_5678_9ABC_DEF0, 1, 3

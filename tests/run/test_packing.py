@@ -1,21 +1,18 @@
 """From rows to messages: which there are, in what order, and what they say."""
 
-from collections.abc import Sequence
-
 from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core import bound
-from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
+from isa_ros.core.device import ENABLED, IMPEDANCE
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
 from isa_ros.run import packing
 from isa_ros.run.output import packer_of
 from isa_ros.run.pack_kernel import pack
 from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
-from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows
 from msg_adapters import event
 from msg_adapters.actuator_messages import TOPICS
@@ -24,26 +21,13 @@ from msg_adapters.cdr_reader import decode, message_class
 import numpy as np
 import pytest
 from rcl_interfaces.msg import ParameterEvent
-from sensor_msgs.msg import FluidPressure, JointState
-from tests.runs import ACCUMULATOR, hip_and_knee, RETURN_LINE
+from sensor_msgs.msg import JointState
+from tests.run.packed import everything, HELD, MAIN, named, some_rows, T_NS, TICK_NS
+from tests.runs import hip_and_knee
 
 LEG = load_run(find('leg.yaml', CONFIG))
-TICK_NS, T_NS = 6_000_000, 7_000_000
 SUFFIXES = ('applied_parameters', 'applied_setpoint', 'device', 'joint_states', 'load_cell',
             'pressure_a', 'pressure_b', 'references', 'valve')
-HELD, MAIN = ('supply', ('pressure',)), ('main', ('pressure', 'return_pressure'))
-"""Names of supplies with what they publish."""
-ATMOSPHERE = 101325.0  # Pa, ISO 2533
-
-
-def some_rows(n: int = 2, n_supplies: int = 1) -> PublishedRows:
-    """Return rows whose numbers all differ but those of the device; nothing is applied."""
-    samples, supplies = np.zeros(n, SAMPLE), np.zeros(n_supplies, SUPPLY_SAMPLE)
-    samples.view(np.float64)[:] = np.arange(1.0, len(SAMPLE.names) * n + 1)
-    supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
-    for field in (*FIELDS, 'age'):
-        samples[field] = 0.0
-    return PublishedRows(samples, np.zeros(n, COMMAND), supplies, {})
 
 
 def applied(rows: PublishedRows, row: int, kinds: int = HAS_SETPOINT, **values: float) -> None:
@@ -51,17 +35,6 @@ def applied(rows: PublishedRows, row: int, kinds: int = HAS_SETPOINT, **values: 
     rows.applied[row]['kinds'] = kinds
     for name, value in values.items():
         rows.applied[row][name] = value
-
-
-def named(packer: Packer, messages: Sequence[tuple[int, bytes]]) -> list[tuple[str, bytes]]:
-    return [(packer.topics[k].name, data) for k, data in messages]
-
-
-def everything(packer: Packer, events: Sequence[bytes] = ()) -> dict[str, bytes]:
-    """Return what is packed by topic; each topic comes once."""
-    messages = named(packer, packer.all_messages(events))
-    assert len({name for name, _ in messages}) == len(messages)
-    return dict(messages)
 
 
 def stamp_ns(message: JointState) -> int:
@@ -178,20 +151,6 @@ def test_several_events_of_an_instant_keep_their_order(packer):
             if name == '/coordinator/events'] == events
 
 
-def test_pressures_are_absolute(packer, rows):
-    """Gauge + 101325 Pa, as sensor_msgs/FluidPressure demands."""
-    packer.pack(T_NS, TICK_NS, {})
-    said = everything(packer)
-    for row, name in enumerate(('hip', 'knee')):
-        for chamber in 'ab':
-            message = decode(said[f'/{name}/pressure_{chamber}'], FluidPressure)
-            assert message.fluid_pressure == rows.samples[f'pressure_{chamber}'][row] + ATMOSPHERE
-            assert message.header.frame_id == name
-    supply = decode(said['/coordinator/supply_pressure'], FluidPressure)
-    assert supply.fluid_pressure == rows.supplies['pressure'][0] + ATMOSPHERE
-    assert supply.header.frame_id == 'world'
-
-
 def test_the_numbers_of_each_row_are_in_its_own_messages(packer, rows):
     packer.pack(T_NS, TICK_NS, {})
     said = everything(packer)
@@ -199,66 +158,6 @@ def test_the_numbers_of_each_row_are_in_its_own_messages(packer, rows):
         state = decode(said[f'/{name}/joint_states'], JointState)
         assert (state.position[0], state.velocity[0], state.effort[0]) == tuple(
             rows.samples[row].item()[:3])
-
-
-def test_only_a_return_line_with_a_volume_shows_its_pressure():
-    """A return line that stays at tank pressure has nothing to show."""
-    rows = some_rows(2, 2)
-    packer = Packer(
-        Names([('hip', True), ('knee', False)], [('held', HELD[1]), MAIN]), rows)
-    packer.pack(T_NS, TICK_NS, {})
-    said = everything(packer)
-    pressures = {name: decode(data, FluidPressure).fluid_pressure for name, data in said.items()
-                 if name.startswith('/coordinator/')}
-    assert pressures == {
-        '/coordinator/held_pressure': rows.supplies['pressure'][0] + ATMOSPHERE,
-        '/coordinator/main_pressure': rows.supplies['pressure'][1] + ATMOSPHERE,
-        '/coordinator/main_return_pressure': rows.supplies['return_pressure'][1] + ATMOSPHERE}
-
-
-def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
-    """Of a constant supply and of a pump with an accumulator alike."""
-    def topics(*sheets: ConstantSupply) -> list[str]:
-        run = hip_and_knee([SupplyConfig(name, sheet, (fed,)) for (name, fed), sheet in zip(
-            (('first', 'hip'), ('second', 'knee')), sheets)])
-        packer = packer_of(run, Rows(2, surroundings_of(run)).published)
-        return [topic.name for topic in packer.surroundings]
-
-    held = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
-    line = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=RETURN_LINE)
-    assert topics(held, ACCUMULATOR) == [
-        '/coordinator/applied_parameters', '/coordinator/first_pressure',
-        '/coordinator/second_pressure', '/diagnostics']
-    assert topics(line, held) == [
-        '/coordinator/applied_parameters', '/coordinator/first_pressure',
-        '/coordinator/first_return_pressure', '/coordinator/second_pressure', '/diagnostics']
-
-
-def test_a_body_shows_the_floats_of_its_sample():
-    """By the columns of its own record type, arrays element by element."""
-    messages = [JointStates('/body', ['a', 'b'], ['height', 'angle[1]'], [], [])]
-    body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
-    packer = Packer(Names([('hip', True)], [HELD], {'cart': messages}),
-                    some_rows(1)._replace(bodies={'cart': body}))
-    body['angle'], body['height'] = (0.25, 0.5), 2.0
-    packer.pack(T_NS, TICK_NS, {})
-    assert list(decode(everything(packer)['/body'], JointState).position) == [2.0, 0.5]
-
-
-def test_each_of_several_bodies_shows_its_own_floats():
-    """At every packing anew, though their samples are not one memory."""
-    names = {name: [JointStates(f'/{name}/joints', ['a'], ['angle[1]'], [], ['load'])]
-             for name in ('left', 'right')}
-    bodies = {name: np.zeros(1, [('angle', '<f8', (2,)), ('load', '<f8')]) for name in names}
-    packer = Packer(Names([('hip', True)], [HELD], names),
-                    some_rows(1)._replace(bodies=bodies))
-    for scale in (1.0, 10.0):
-        for k, body in enumerate(bodies.values(), start=1):
-            body['angle'], body['load'] = (0.0, k * scale), -k * scale
-        packer.pack(T_NS, TICK_NS, {})
-        for k, name in enumerate(names, start=1):
-            found = decode(everything(packer)[f'/{name}/joints'], JointState)
-            assert (found.position[0], found.effort[0]) == (k * scale, -k * scale)
 
 
 def test_one_actuator_is_said_as_its_node_publishes_it(packer, rows):

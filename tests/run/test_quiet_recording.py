@@ -4,7 +4,7 @@ from isa_ros.bag.message_chunk import Room
 from isa_ros.run.packing import Names, Packer
 import numpy as np
 import pytest
-from tests.run.test_packing import HELD, some_rows
+from tests.run.packed import HELD, some_rows
 
 
 def test_a_recording_has_the_layout_room_and_stamps_that_were_asked_for():

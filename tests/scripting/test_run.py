@@ -132,6 +132,26 @@ def test_a_saved_result_is_the_bag_of_the_run(drop, tmp_path):
         drop.simulate().save(tmp_path / 'bag')
 
 
+@pytest.mark.parametrize(('record', 'message'), [
+    ({'leave_out': ['/knee/valve']},
+     r"leg.yaml: record.leave_out = '/knee/valve' matches no topic; valid: /clock, "),
+    ({'leave_out': ['/kfe/*']}, 'leaves out /kfe/applied_parameters, which a replay needs'),
+    ({'decimate': {'/coordinator/events': 5}}, 'decimates /coordinator/events, of which a replay')])
+def test_a_result_whose_bag_would_lack_something_is_not_saved(drop, tmp_path, record, message):
+    """As `isa bringup` refuses it: it was saved, and the pattern had no effect."""
+    with pytest.raises(ConfigError, match=message):
+        drop.replace({'record': record}).simulate().save(tmp_path / 'bag')
+    assert not (tmp_path / 'bag').exists()
+
+
+def test_a_result_is_saved_without_what_is_left_out(drop, tmp_path):
+    from isa_ros.bag.reader import Bag
+    thinned = drop.replace({'record': {'leave_out': ['/*/references', '/clock']}})
+    topics = set(Bag(thinned.simulate().save(tmp_path / 'bag')).types)
+    assert '/kfe/valve' in topics
+    assert not topics & {'/clock', '/haa/references', '/kfe/references'}
+
+
 class Push(Controller):
     """Asks the knee for another place at every tick."""
 

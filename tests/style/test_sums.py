@@ -11,11 +11,11 @@ SIMULATED = (
 EXACT = {
     ('actuator/saved_rows.py', '(rows.nbytes for rows in self._rows)'),
     ('config/runs/supplies.py', '(len(supply.sampled) for supply in supplies)'),
-    ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
+    ('reu/device_record.py', '(1 << mode for mode in possible_modes(reu))'),
     ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),
     ('run/wire/steps.py', '(record.itemsize for record in roster.bodies.values())'),
     ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))'),
-    ('surroundings/surroundings.py', '(own.saved_size for own in self._circuits)')}
+    ('surroundings/surroundings.py', 'sizes')}
 """Sums of integers, or of two numbers."""
 
 

@@ -5,7 +5,7 @@ from isa_ros.core.device import DISABLED, ENABLED, QUICK_STOP
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
-from tests.tick.test_emergency_stop import advance, states, SUPPLY
+from tests.tick.stopped_group import advance, states, SUPPLY
 
 LIFT, PORT = 'crane/lift', {'kind': 'moving'}
 CATEGORIES = ('close', 'ramp', 'ramp_and_hold')

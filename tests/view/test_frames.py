@@ -26,6 +26,13 @@ def test_all_of_few_ticks_are_there():
     assert own.take().first == 40
 
 
+def test_samples_before_a_gap_or_a_restart_are_forgotten():
+    for jump in (9, 3, 0):
+        own = gathered([5, 6, 7, jump, jump + 1])
+        first, every, values = own.take()
+        assert (first, every, values[:, 0].tolist()) == (jump, 1, [jump, jump + 1])
+
+
 @pytest.mark.parametrize('n, every', [(MOST, 1), (MOST + 1, 2), (2 * MOST + 1, 4), (5000, 32)])
 def test_of_many_ticks_an_even_part_is_there(n, every):
     found = gathered(range(3, 3 + n)).take()

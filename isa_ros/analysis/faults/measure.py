@@ -8,29 +8,26 @@ differs from that of the sound run by more than `VISIBLE` steps of its converter
 itself makes of it are its warnings, trips and state, where a `SAMPLE` has them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
+from isa_ros.analysis.faults.recorded import (
+    BIT_SETS, DEVICE, EXACT, largest_error, recorded, Signals, STATE, STEP_S, SUPPLY)
 from isa_ros.analysis.faults.rigs import common_rigs, DURATION_S, Rig, rig_of
 from isa_ros.config.models.fault_catalogue import fault_catalogue, named_fault, NamedFault
 from isa_ros.config.text.sections import Place
-from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
 from isa_ros.core.fields import units_of
-from isa_ros.core.signals import (
-    CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_FIELDS)
+from isa_ros.core.signals import CHANNELS, SAMPLE_FIELDS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
-from isa_ros.simulation import Simulation
 from isa_ros.text.progress import Progress
 from msg_adapters import device
 from msg_adapters.diagnostics import OK
 import numpy as np
-from numpy.typing import NDArray
 
-STEP_S = 1e-3
 BEGIN_S, END_S = 0.5, 1.0
 """Time of every fault."""
 CLEAR_S = 1.1
@@ -41,11 +38,6 @@ VISIBLE = 4.0
 SOUND = 40.0
 """Steps within which all signals are after a recovery, about 1 % of the range: where the seals
 stick and slip, two runs differ by more than `VISIBLE` for seconds."""
-_BIT_SETS = {'warnings': 'warning', 'trips': 'trip'}
-_STATE = 'device_state'
-_DEVICE = (_STATE, 'device_mode', 'device_event', *_BIT_SETS, 'state_since')
-"""Fields of a `SAMPLE` in which an actuator reports of itself."""
-_SUPPLY = 'supply pressure'
 _LINK = 'link'
 
 
@@ -79,6 +71,10 @@ class FaultEffect:
     visible: tuple[Visible, ...]
     """The earliest first."""
     noticed: tuple[DeviceReport, ...]
+    position_error: float
+    """Largest distance of the piston from its place in the sound run while it lasts, m."""
+    force_error: float
+    """Likewise of the force in the sensor, N."""
     recovered_s: float | None
     """From the end of the fault, and a clear-fault, until all is within `SOUND`; None: never."""
     message: str
@@ -120,7 +116,7 @@ def outcomes(
     """
     chosen = chosen_faults(names)
     rigs = dict(zip(('', _LINK), common_rigs()))
-    sound: dict[str, Mapping[str, NDArray[np.float64]]] = {}
+    sound: dict[str, Signals] = {}
     found = []
     for k, fault in enumerate(chosen):
         if report is not None:
@@ -128,18 +124,19 @@ def outcomes(
         name = _LINK if is_of_link(fault) else fault.rig
         rig = rigs[name] = rigs[name] if name in rigs else rig_of(name)
         if name not in sound:
-            sound[name] = _recorded(rig, ())
+            sound[name] = recorded(rig, (), DURATION_S)
         found.append(_outcome(rig, fault, sound[name]))
     if report is not None:
         report(len(chosen), len(chosen))
     return found
 
 
-def _outcome(rig: Rig, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> FaultEffect:
+def _outcome(rig: Rig, fault: NamedFault, sound: Signals) -> FaultEffect:
     try:
-        faulty = _recorded(rig, ({**rig.tree(fault, BEGIN_S), 'until_s': END_S},))
+        faulty = recorded(
+            rig, ({**rig.tree(fault, BEGIN_S), 'until_s': END_S},), DURATION_S, CLEAR_S)
     except SimulationDiverged as error:
-        return FaultEffect(fault, (), (), None, '', str(error))
+        return FaultEffect(fault, (), (), 0.0, 0.0, None, '', str(error))
     begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
     resolution, units = _resolution(rig), _units(rig)
     visible, last = [], end
@@ -154,36 +151,39 @@ def _outcome(rig: Rig, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
         far = np.flatnonzero(np.abs(difference) > SOUND * step)
         if len(far):
             last = max(last, int(far[-1]) + 1)
+    position_error, force_error = (
+        largest_error(faulty, sound, name, end + 1) for name in EXACT)
     return FaultEffect(
         fault, tuple(sorted(visible, key=lambda own: own.after_s)),
         tuple(_noticed(faulty, sound, begin)),
-        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S,
+        position_error, force_error,
+        None if last >= len(faulty[SUPPLY]) else (last - end) * STEP_S,
         _message(faulty, rig.actuator))
 
 
-def _message(faulty: Mapping[str, NDArray[np.float64]], name: str) -> str:
+def _message(faulty: Signals, name: str) -> str:
     """Return the words of the first sample at the gravest level, or '' if that is OK."""
-    reported = np.array([faulty[name] for name in _DEVICE]).T
+    reported = np.array([faulty[name] for name in DEVICE]).T
     changes = [0, *np.flatnonzero((reported[1:] != reported[:-1]).any(axis=1)) + 1]
-    statuses = [device.joined(name, dict(zip(_DEVICE, reported[tick]))) for tick in changes]
+    statuses = [device.joined(name, dict(zip(DEVICE, reported[tick]))) for tick in changes]
     gravest = max(statuses, key=lambda status: status.level)
     return '' if gravest.level == OK else gravest.message
 
 
 def _noticed(
-        faulty: Mapping[str, NDArray[np.float64]], sound: Mapping[str, NDArray[np.float64]],
+        faulty: Signals, sound: Signals,
         begin: int) -> list[DeviceReport]:
     found = []
-    for field, kind in _BIT_SETS.items():
+    for field, kind in BIT_SETS.items():
         new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
         for name, bit in BITS.items():
             ticks = np.flatnonzero(new >> bit & 1)
             if len(ticks):
                 found.append(DeviceReport(kind, name, (int(ticks[0]) - begin) * STEP_S))
-    ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
+    ticks = np.flatnonzero(faulty[STATE] != sound[STATE])
     if len(ticks):
         found.append(DeviceReport(
-            'state', STATES[int(faulty[_STATE][ticks[0]])], (int(ticks[0]) - begin) * STEP_S))
+            'state', STATES[int(faulty[STATE][ticks[0]])], (int(ticks[0]) - begin) * STEP_S))
     return sorted(found, key=lambda own: own.after_s)
 
 
@@ -191,35 +191,11 @@ def _resolution(rig: Rig) -> dict[str, float]:
     """Return the step of the converter of every signal, SI."""
     own = sensors_record(rig.run.configuration.actuator(rig.actuator).sheet.plant.sensors)
     steps = {'position': own.encoder, 'pressure_a': own.pressure_step,
-             'pressure_b': own.pressure_step, _SUPPLY: own.pressure_step}
+             'pressure_b': own.pressure_step, SUPPLY: own.pressure_step}
     return {name: float(steps[name] if name in steps else own[f'{name}_step'])
-            for name in (*CHANNELS, _SUPPLY)}
+            for name in (*CHANNELS, SUPPLY)}
 
 
 def _units(rig: Rig) -> dict[str, str]:
     is_rotary = rig.run.configuration.actuator(rig.actuator).sheet.is_rotary
-    return {_SUPPLY: 'Pa'} | units_of(SAMPLE_FIELDS, is_rotary)
-
-
-def _recorded(rig: Rig, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]]:
-    """Return the signals of a run with some faults, which are cleared at their end."""
-    scenario = rig.run.scenario.with_faults(faults)
-    simulation = Simulation(replace(scenario, run=rig.run.configuration))
-    n, clear = round(DURATION_S / STEP_S), round(CLEAR_S / STEP_S)
-    rows, row = np.zeros(n + 1, SAMPLE), rig.row
-    for tick in range(n + 1):
-        if tick:
-            simulation.step()
-        rows[tick] = simulation.group.samples[row]
-        if tick in (clear, clear + 1) and faults:
-            _clear(simulation, row, tick == clear)
-    return {_SUPPLY: rows['supply_pressure']} | {
-        name: rows[name] for name in (*CHANNELS, *_DEVICE)}
-
-
-def _clear(simulation: Simulation, row: int, is_first: bool) -> None:
-    """Clear the fault that the device keeps, then enable it again."""
-    command = np.zeros(1, COMMAND)[0]
-    command['kinds'] = HAS_CLEAR_FAULT if is_first else HAS_ENABLE
-    command['is_enabled'] = 1
-    simulation.group.actuators[row].accept(command)
+    return {SUPPLY: 'Pa'} | units_of(SAMPLE_FIELDS, is_rotary)

@@ -6,6 +6,7 @@ from typing import Any
 
 from isa_ros.analysis.faults.measure import (
     BEGIN_S, CLEAR_S, DeviceReport, END_S, FaultEffect, SOUND, VISIBLE, Visible)
+from isa_ros.analysis.faults.recorded import in_mm, in_newtons
 from isa_ros.analysis.faults.rigs import ABOUT, LINK
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.page import Page
@@ -13,7 +14,7 @@ from isa_ros.text.table import aligned, digits
 
 PAGE = 'device_faults.md'
 HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences, or why none', 'device',
-          'sound again after, ms')
+          'position error, mm', 'force error, N', 'sound again after, ms')
 MESSAGE_HEADER = ('fault', 'message on /diagnostics')
 LIST_HEADER = ('fault', 'of', 'set', 'meaning')
 _SHOWN = {'Pa': ('MPa', 1e-6), 'm': ('mm', 1e3), 'A': ('mA', 1e3)}
@@ -32,8 +33,11 @@ A fault is seen in a signal that the REU measures, or in the supply's pressure, 
 from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
 largest differences are those of the first three such signals while the fault lasts. A device is
 sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
-has what the actuator itself reports, its warnings, trips and state, and when. A trip keeps its
-outputs off until it is cleared: `~/clear_fault`, then `~/enable`, at {CLEAR_S:g} s."""
+has what the actuator itself reports, its warnings, trips and state, and when. The errors of
+position and force are the largest distances from the sound run while the fault lasts, of the
+piston and of the force in the sensor themselves, whatever the sensors read; where the device
+reports *nothing*, that is what the fault costs unnoticed. A trip keeps its outputs off until it is
+cleared: `~/clear_fault`, then `~/enable`, at {CLEAR_S:g} s; until then nothing holds the load."""
 
 _MESSAGES = """The message of the device on `~/device` and, as the task *device*, on
 `/diagnostics`: the first one of the gravest level. With all other faults it is that of a sound
@@ -66,12 +70,13 @@ def _rows(found: Sequence[FaultEffect]) -> list[tuple[str, ...]]:
 
 def _cells(own: FaultEffect) -> tuple[str, ...]:
     if own.diverged:
-        return (own.fault.name, own.diverged, '', '', '', '')
+        return (own.fault.name, own.diverged, *[''] * (len(HEADER) - 2))
     first = own.visible[0] if own.visible else None
     return (own.fault.name, 'not seen' if first is None else first.signal,
             '' if first is None else f'{first.after_s * 1e3:g}',
             ', '.join(_difference(one) for one in _largest(own)) or own.fault.unseen,
             ', '.join(_note(one) for one in own.noticed) or _nothing(own.fault),
+            in_mm(own.position_error), in_newtons(own.force_error),
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
 
 
@@ -104,6 +109,7 @@ def as_tree(found: Sequence[FaultEffect]) -> dict[str, Any]:
         'part': own.fault.part, 'part_set': dict(own.fault.part_values), 'rig': own.fault.rig,
         'visible': [one._asdict() for one in own.visible],
         'noticed': [one._asdict() for one in own.noticed],
+        'position_error': own.position_error, 'force_error': own.force_error,
         'recovered_s': own.recovered_s, 'message': own.message, 'diverged': own.diverged,
     } for own in found]}
 

@@ -9,9 +9,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-import warnings
 
 from isa_ros.analysis.faults.measure import is_of_link
+from isa_ros.analysis.faults.recorded import (
+    BIT_SETS, EXACT, in_mm, in_newtons, largest_error, recorded, Signals, STEP_S)
 from isa_ros.analysis.faults.rigs import CONFIG, LINK, Rig
 from isa_ros.config.models.fault_catalogue import common_faults, named_fault, NamedFault
 from isa_ros.config.text.sections import Place
@@ -19,12 +20,10 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page
 from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits
-from isa_ros.tick.trips import TripWarning
+from isa_ros.text.table import aligned
 import numpy as np
 
 BEGIN_S, DURATION_S = 0.5, 1.2
@@ -47,12 +46,12 @@ _HEAD = f"""# Which fault is noticed when
 
 Each fault of any actuator or pump in four situations, of the rig of
 [device_faults.md](device_faults.md): at rest, moving by 20 mm at 0.5 Hz and at 4 Hz, and pushing
-with 3 kN at 2 Hz against a blocked
-load. It begins at {BEGIN_S:g} s and lasts. A cell has the condition that is noticed first, whether
-it warns or trips, and after how many ms; then the largest errors of position and force while the
-fault lasts, against the same run without it, exact ones. Without a condition there is *nothing*:
-then these errors are what the fault costs unnoticed. Once a trip has disabled the device, they
-are those of a load that nothing holds. Written by
+with 3 kN at 2 Hz against a blocked load. It begins at {BEGIN_S:g} s and lasts. A cell has the
+condition that is noticed first, whether it warns or trips, and after how many ms; then the largest
+errors of position and force while the fault lasts, against the same run without it: those of the
+piston and of the force in the sensor themselves, whatever the sensors read. Without a condition
+there is *nothing*: then these errors are what the fault costs unnoticed. Once a trip has disabled
+the device, they are those of a load that nothing holds. Written by
 
     ./isa faults --situations --out docs
 """
@@ -97,7 +96,7 @@ def situations(
             'name': 'situation', 'duration_s': DURATION_S, 'tracks': {'ram': [track]}}
         plain = Rig(load(config, scenario), 'ram')
         linked = Rig(load({**config, 'link': LINK}, scenario), 'ram')
-        sound = [rig.run.simulate() for rig in (plain, linked)]
+        sound = [recorded(rig, (), DURATION_S) for rig in (plain, linked)]
         for j, fault in enumerate(chosen):
             if report is not None:
                 report(k * len(chosen) + j, len(SITUATIONS) * len(chosen), fault.name)
@@ -118,35 +117,29 @@ def _chosen(names: Sequence[str] | None) -> list[NamedFault]:
     return found
 
 
-def _seen(fault: NamedFault, situation: str, rig: Rig, sound: Result) -> Seen:
+def _seen(fault: NamedFault, situation: str, rig: Rig, sound: Signals) -> Seen:
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter('ignore', TripWarning)
-            faulty = rig.run.simulate(faults=[rig.tree(fault, BEGIN_S)])
+        faulty = recorded(rig, (rig.tree(fault, BEGIN_S),), DURATION_S)
     except SimulationDiverged as error:
         return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
     condition, kind, after_s = _first(faulty, sound)
-    return Seen(fault.name, situation, condition, kind, after_s,
-                _largest(faulty, sound, 'position'), _largest(faulty, sound, 'force'))
+    position_error, force_error = (largest_error(faulty, sound, own) for own in EXACT)
+    return Seen(fault.name, situation, condition, kind, after_s, position_error, force_error)
 
 
-def _first(faulty: Result, sound: Result) -> tuple[str, str, float]:
+def _first(faulty: Signals, sound: Signals) -> tuple[str, str, float]:
     """Return the condition noticed first, of the same tick the trip, and when."""
     found = []
-    for order, (field, kind) in enumerate((('trips', 'trip'), ('warnings', 'warning'))):
-        new = faulty[f'ram.{field}'].astype(np.int64) & ~sound[f'ram.{field}'].astype(np.int64)
+    for field, kind in BIT_SETS.items():
+        new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
         for name, bit in BITS.items():
             ticks = np.flatnonzero(new >> bit & 1)
             if len(ticks):
-                found.append((float(faulty.time[ticks[0]]) - BEGIN_S, order, name, kind))
+                found.append((float(ticks[0]) * STEP_S - BEGIN_S, kind != 'trip', name, kind))
     if not found:
         return '', '', 0.0
     after_s, _, name, kind = min(found)
     return name, kind, after_s
-
-
-def _largest(faulty: Result, sound: Result, field: str) -> float:
-    return float(np.abs(faulty[f'ram.{field}'] - sound[f'ram.{field}']).max())
 
 
 def _cell(own: Seen) -> str:
@@ -154,8 +147,7 @@ def _cell(own: Seen) -> str:
         return own.diverged
     noticed = (f'{own.kind} {own.condition}, {own.after_s / MILLI:.0f} ms' if own.condition
                else 'nothing')
-    return (f'{noticed}; {digits(own.position_error / MILLI, 3)} mm, '
-            f'{digits(own.force_error, 3)} N')
+    return f'{noticed}; {in_mm(own.position_error)} mm, {in_newtons(own.force_error)} N'
 
 
 def _rows(found: Sequence[Seen]) -> list[tuple[str, ...]]:

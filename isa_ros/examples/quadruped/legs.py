@@ -14,9 +14,10 @@ from isa_ros.core.kernel import kernel
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import RobotContact, RobotSheet
 import numpy as np
+from numpy.typing import NDArray
 
-JOINTS = 3
-"""Joints of a leg, each turning."""
+LEGS, JOINTS = 4, 3
+"""Legs of the robot, and joints of a leg, each turning."""
 
 
 @kernel
@@ -109,6 +110,33 @@ def update_legs(root, turning, angles, speeds, tree, legs, out):
     place_feet(speeds, turning, paths, points, frames, origins, feet, velocities, jacobians)
 
 
+def paths_of(sheet: RobotSheet) -> NDArray[np.int64]:
+    """
+    Return the links of each leg of a robot from the trunk to the foot, (f, 3).
+
+    Raises
+    ------
+    ConfigError
+        It has another number of feet, or a leg another number of joints, or one that slides.
+
+    """
+    feet = _feet(sheet)
+    if len(feet) != LEGS:
+        raise ConfigError(f'number of feet = {len(feet)}, must be {LEGS}')
+    paths = [sheet.path(foot.link)[::-1] for foot in feet]
+    for foot, path in zip(feet, paths):
+        kinds = [sheet.links[i].joint.kind for i in path]
+        if kinds != ['revolute'] * JOINTS:
+            raise ConfigError(
+                f'{foot.name}: its leg has {len(path)} joints ({", ".join(kinds)}), must have '
+                f'{JOINTS} that turn')
+    return np.array(paths, np.int64)
+
+
+def _feet(sheet: RobotSheet) -> Sequence[RobotContact]:
+    return [own for own in sheet.contacts if own.is_foot]
+
+
 class Legs:
     """
     The legs of a robot, one to each of its feet, of three turning joints each.
@@ -116,24 +144,17 @@ class Legs:
     Raises
     ------
     ConfigError
-        A leg has another number of joints, or one that slides.
+        As `paths_of`.
 
     """
 
     def __init__(self, sheet: RobotSheet) -> None:
         links = sheet.links
-        self.feet_of: Sequence[RobotContact] = [own for own in sheet.contacts if own.is_foot]
+        self.feet_of = _feet(sheet)
         """The feet, (f,)."""
-        paths = [sheet.path(foot.link)[::-1] for foot in self.feet_of]
-        for foot, path in zip(self.feet_of, paths):
-            kinds = [links[i].joint.kind for i in path]
-            if kinds != ['revolute'] * JOINTS:
-                raise ConfigError(
-                    f'{foot.name}: its leg has {len(path)} joints ({", ".join(kinds)}), must have '
-                    f'{JOINTS} that turn')
-        self.paths = np.array(paths, np.int64)
+        self.paths = paths_of(sheet)
         """Links of each leg from the trunk to the foot, (f, 3); joint i - 1 moves link i."""
-        n, f = len(links), len(paths)
+        n, f = len(links), len(self.paths)
         self.mass = sheet.mass
         self._tree = (
             np.array([link.parent for link in links], np.int64),

@@ -31,7 +31,7 @@ from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
 from isa_ros.errors import ConfigError
 from isa_ros.examples.quadruped.gait import Gait, swing_feet
-from isa_ros.examples.quadruped.legs import Legs
+from isa_ros.examples.quadruped.legs import Legs, paths_of
 from isa_ros.examples.quadruped.parameters import (
     gains_of, PROGRAM, Program, program_of, TrotGains)
 from isa_ros.examples.quadruped.stance import (
@@ -86,6 +86,10 @@ class Trot(Controller):
             raise ConfigError(f'{place / "body"} = {name!r}, must be a robot of the run: '
                               f'{", ".join(robots) or "it has none"}')
         robot = robots[name]
+        try:
+            paths_of(robot.sheet)
+        except ConfigError as error:
+            raise ConfigError(f'{place / "body"} = {name!r}: {error}') from error
         names = {drive.actuator: actuator
                  for drive, (_, actuator) in zip(robot.sheet.drives, robot.joints)}
         efforts = {drive: setpoint_bounds(run.actuator(own).sheet)['effort'][:2]

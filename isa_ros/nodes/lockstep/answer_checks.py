@@ -68,9 +68,10 @@ class AnswerChecks:
             refuse_requests(answer.parts[first:], n_actuators)
 
     def is_ready(self, answer: Answer, run_id: int) -> bool:
-        """Return whether an answer is one to a hello; refuse those that prevent the run."""
+        """Return whether an answer to a hello is ready; refuse those that prevent the run."""
         if answer.run_id != run_id or answer.kind is AnswerKind.BUSY:
             raise another_coordinator_of(self._node)
+        self.refuse_failure(answer, 'to begin')
         if answer.kind is not AnswerKind.READY:
             return False
         name, expected = self._participants[answer.participant]

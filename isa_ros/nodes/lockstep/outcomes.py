@@ -6,6 +6,7 @@ from typing import NamedTuple
 from isa_ros.errors import IsaError, SimulationDiverged
 from isa_ros.run.wire.answers import AnswerKind, DIVERGENCE
 from isa_ros.run.wire.parts import Parts
+from isa_ros.surroundings.callers import cause_of
 
 
 class Outcome(NamedTuple):
@@ -28,7 +29,7 @@ def outcome_of(kind: AnswerKind, work: Callable[[], Parts]) -> Outcome:
         return Outcome(AnswerKind.REFUSED, (_encoded(str(error)),))
     except BaseException as error:
         return Outcome(
-            AnswerKind.REFUSED, (_encoded(f'{type(error).__name__}: {error}'),), error)
+            AnswerKind.REFUSED, (_encoded(cause_of(error)),), error)
 
 
 def _encoded(text: str) -> bytes:

@@ -11,6 +11,7 @@ from isa_ros.nodes.lockstep.outcomes import outcome_of
 from isa_ros.nodes.lockstep.roles import Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
 from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
+from isa_ros.nodes.lockstep.step_checks import refuse_misfit
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.wire.answering import Ended
@@ -151,7 +152,7 @@ class ParticipantEnd:
         try:
             step = decode_step(data)
             if step.run_id == self._run_id:
-                self._refuse_misfit(step)
+                refuse_misfit(step, self._role, self._n_participants)
         except WireError as error:
             self._log.warning(
                 f'a message on {self._topic} is discarded: {error}',
@@ -168,16 +169,6 @@ class ParticipantEnd:
             ticks.expect(step, self._index)
         else:
             ticks.forget()
-
-    def _refuse_misfit(self, step: Step) -> None:
-        if step.kind is StepKind.TICK:
-            self._role.check(step)
-        elif step.kind is StepKind.RESTORE:
-            step.refuse_restore(self._n_participants)
-        elif step.kind is StepKind.CHANGE:
-            step.refuse_change(self._n_participants)
-        elif step.kind is StepKind.BEGIN:
-            step.refuse_begin(self._n_participants)
 
     def _handle(self, step: Step) -> None:
         if step.run_id == self._run_id:
@@ -228,7 +219,7 @@ class ParticipantEnd:
             (self._identity, self._role.digest, *self._first)))
 
     def _bind(self, step: Step) -> bool:
-        """Join the run of a hello; return whether it lists this participant."""
+        """Join the run of a hello; return whether it lists this participant, which starts."""
         self._unbind()
         roster = step.roster()
         names = list(roster.names)
@@ -240,8 +231,16 @@ class ParticipantEnd:
         self._external = [name for name, record in roster.bodies.items() if has_ports(record)]
         self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
         self._role.serve()
-        self._first = self._role.start(step, self._index)
-        return True
+        outcome = outcome_of(AnswerKind.READY, lambda: self._role.start(step, self._index))
+        self._first = outcome.parts
+        if outcome.kind is AnswerKind.READY:
+            return True
+        self._send(encode_answer(
+            outcome.kind, step.run_id, step.tick, self._index, outcome.parts))
+        self._unbind()
+        if outcome.error is not None:
+            raise outcome.error
+        return False
 
     def _begin_with(self, step: Step) -> None:
         """Begin, or leave the run if another node of this name has answered its hellos first."""

@@ -99,7 +99,7 @@ class Circuit:
                 for k in range(n)]
 
     def _checked(self, sheet: CircuitSupply) -> tuple[Network, int]:
-        stiffest = network_of(sheet, coldest_oil(sheet))
+        stiffest = network_of(sheet, coldest_oil(sheet, self._warmth))
         steps = steps_of(sheet, stiffest, self._step, self._name)
         for own, node in zip(self._fed, self._nodes):
             self._refuse_small(own, stiffest.nodes[node])
@@ -226,10 +226,15 @@ class Circuit:
             self._warmth.show(self._row_of, self.samples)
 
     @property
+    def _heat_at(self) -> int:
+        """Return how many numbers of a `snapshot` are before those of the heat."""
+        return len(self.state) + self._oil.size + len(self._held)
+
+    @property
     def saved_size(self) -> int:
         """Return the bytes of a `snapshot`: state, oil of actuators, gas that is left, heat."""
         heat = 0 if self._warmth is None else len(self._warmth.snapshot())
-        return self.state.nbytes + self._oil.nbytes + self._held.nbytes + heat
+        return self._heat_at * self.state.itemsize + heat
 
     def snapshot(self) -> bytes:
         """
@@ -249,8 +254,12 @@ class Circuit:
 
     def refuse_snapshot(self, snapshot: bytes) -> None:
         """Refuse bytes that are not a `snapshot` of this circuit; raises `ConfigError`."""
-        if len(snapshot) != self.saved_size or not np.isfinite(np.frombuffer(snapshot)).all():
+        if len(snapshot) != self.saved_size or not self._can_be(np.frombuffer(snapshot)):
             raise ConfigError(f'{self._name}: saved state is not one of this circuit')
+
+    def _can_be(self, numbers: NDArray[np.float64]) -> bool:
+        return bool(np.isfinite(numbers).all()) and (
+            self._warmth is None or self._warmth.can_be(numbers[self._heat_at:]))
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`, whose sheet and samples are in force."""
@@ -258,10 +267,9 @@ class Circuit:
         size = len(self.state)
         self.state[:] = values[:size]
         self._oil[:] = values[size:size + self._oil.size].reshape(self._oil.shape)
-        heat_at = size + self._oil.size + len(self._held)
-        self._network.nodes['gas']['amount'] = values[size + self._oil.size:heat_at]
+        self._network.nodes['gas']['amount'] = values[size + self._oil.size:self._heat_at]
         if self._warmth is not None:
-            self._warmth.restore(values[heat_at:])
+            self._warmth.restore(values[self._heat_at:])
             self._take(self._sheet)
         self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
         saved = list(SUPPLY_STATE.names or ())

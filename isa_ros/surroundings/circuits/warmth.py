@@ -20,6 +20,7 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 
 STEP = 0.05     # K: viscosity changes by 0.2 %, compressibility by 0.02 %
+COLDEST, WARMEST = -60.0, 5000.0    # celsius: no sheet begins so, and no run ends so
 _PERCENT = 0.01
 
 
@@ -113,6 +114,10 @@ class Warmth:
         """Return its state."""
         return self.oil.tobytes() + self.given.tobytes()
 
+    def can_be(self, numbers: np.ndarray) -> bool:
+        """Return whether numbers are those of a `snapshot`: both temperatures of oil."""
+        return bool((COLDEST <= numbers[:2]).all() and (numbers[:2] <= WARMEST).all())
+
     def restore(self, numbers: np.ndarray) -> None:
         """Continue from the numbers of a `snapshot`."""
         for name, value in zip(OIL_STATE.names or (), numbers):
@@ -126,13 +131,13 @@ def warmth_of(sheet: CircuitSupply) -> Warmth | None:
     return Warmth(sheet, heat) if isinstance(heat, MixedHeat) else None
 
 
-def coldest_oil(sheet: CircuitSupply) -> OilNow:
-    """Return the oil of a circuit at the least temperature that it can have."""
+def coldest_oil(sheet: CircuitSupply, own: Warmth | None) -> OilNow:
+    """Return the oil of a circuit at the least temperature that it has or can get."""
     heat = sheet.heat
-    if not isinstance(heat, MixedHeat):
+    if own is None or not isinstance(heat, MixedHeat):
         return oil_at_sheet(sheet.oil)
     ways = ways_of(heat, list(_coolers(sheet).values()))
-    return oil_at(sheet.oil, heat, coldest(heat, ways))
+    return oil_at(sheet.oil, heat, min(coldest(heat, ways), float(own.oil.celsius)))
 
 
 def _coolers(sheet: CircuitSupply) -> dict[str, CoolerPart]:

@@ -3,7 +3,6 @@
 
 const $ = id => document.getElementById(id);
 const SPANS = [1, 5, 20], SPEEDS = [0.01, 0.1, 0.25, 0.5, 1, 2, 5, 10], AS_FAST = 0;
-const listeners = [];                   // called with each frame
 let sent = 0;
 
 function note(text, isBad) {
@@ -46,20 +45,22 @@ function choices(select, values, text, chosen) {
 }
 
 class Traces {
-  constructor(groups, store) {
+  constructor(groups, store, onSource) {
     Object.assign(this, { groups, store, charts: [] });
     choices($('source'), groups.map((own, k) => k), k => groups[k].title, 0);
-    choices($('window'), SPANS, span => `${span} s`, 5);
-    $('source').addEventListener('change', () => this.show());
+    choices($('window'), SPANS, span => `${span} s`, SPANS[1]);
+    $('source').addEventListener('change', () => { this.show(); onSource(this.chosen); });
+    onSource(this.chosen);
     $('window').addEventListener('change', () => this.update());
     this.show();
   }
 
+  get chosen() { return this.groups[$('source').value]; }
+
   show() {
     for (const chart of this.charts) chart.remove();
     $('plots').replaceChildren();
-    const group = this.groups[$('source').value];
-    this.charts = (group ? group.panels : []).map(
+    this.charts = (this.chosen ? this.chosen.panels : []).map(
       panel => new Chart($('plots'), panel, this.store, () => +$('window').value));
     this.update();
   }
@@ -75,6 +76,8 @@ function header(meta) {
   $('speed').addEventListener('change', () => order('speed', { value: +$('speed').value }));
   $('pause').addEventListener('click', () => order('pause', { value: !latest.is_paused }));
   $('step').addEventListener('click', event => order('step', { value: event.shiftKey ? 100 : 1 }));
+  $('restart').hidden = meta.kind === 'bag';
+  $('restart').addEventListener('click', () => order('restart'));
   const seek = $('seek');
   if (meta.kind === 'bag') {
     Object.assign(seek, {
@@ -93,10 +96,15 @@ function header(meta) {
 function show(meta, frame) {
   $('clock').textContent = `${(frame.tick * meta.step).toFixed(3)} s`;
   $('pause').textContent = frame.is_paused ? 'go on' : 'pause';
-  if (document.activeElement !== $('speed')) $('speed').value = frame.speed;
+  if (document.activeElement !== $('speed')) {
+    if (![...$('speed').options].some(own => +own.value === frame.speed)) {
+      choices($('speed'), [frame.speed], speed => `${speed} ×`);
+    }
+    $('speed').value = frame.speed;
+  }
   if (document.activeElement !== $('seek')) $('seek').value = frame.tick * meta.step;
   $('state').textContent = frame.is_over ? 'ended' : frame.is_paused ? 'paused'
-    : meta.kind === 'bag' ? 'plays' : 'runs';
+    : frame.behind > 0.2 ? `${frame.behind.toFixed(1)} s behind` : meta.kind === 'bag' ? 'plays' : 'runs';
 }
 
 let latest = { is_paused: false };
@@ -105,13 +113,15 @@ let latest = { is_paused: false };
   const meta = await (await fetch('page.json')).json();
   const store = new Store(meta.channels, meta.step), stage = new Stage($('stage'), meta.scene);
   header(meta);
-  const traces = new Traces(meta.groups, store);
+  const panel = meta.controls ? new Panel($('controls'), meta.controls, meta.title) : null;
+  const traces = new Traces(meta.groups, store, group => panel && panel.show(group && group.name));
   if (meta.note) note(meta.note);
   let isDue = false, frames = 0;
   const draw = () => {
     isDue = false;
     show(meta, latest);
     traces.update();
+    if (panel) panel.update(latest);
     if (store.n) stage.pose(channel => store.last[channel]);
     document.body.dataset.ready = document.body.dataset.frames = ++frames;
   };
@@ -119,10 +129,14 @@ let latest = { is_paused: false };
   stream.onmessage = event => {
     const frame = JSON.parse(event.data);
     store.add(frame);
-    for (const answer of frame.answers) if (!answer.is_done) note(answer.text, true);
+    for (const answer of frame.answers) note(answer.text, !answer.is_done);
     latest = frame;
-    for (const listener of listeners) listener(frame);
-    if (frame.is_over) stream.close();
+    if (frame.is_over) {
+      stream.close();
+      for (const own of document.querySelectorAll('button, #speed, #seek, aside input')) {
+        own.disabled = true;
+      }
+    }
     if (!isDue) { isDue = true; requestAnimationFrame(draw); }
   };
   stream.onerror = () => {

@@ -9,7 +9,7 @@ import pytest
 @pytest.fixture(scope='module')
 def found():
     return {(own.fault, own.situation): own
-            for own in situations(['pressures_lost', 'relief_stuck_open'])}
+            for own in situations(['pressures_lost', 'relief_stuck_open', 'encoder_stuck'])}
 
 
 def test_a_broken_wire_is_noticed_in_every_situation(found):
@@ -34,10 +34,15 @@ def test_open_relief_valves_are_noticed_where_force_is_needed(found):
         'relief_stuck_open', 'at rest'].position_error
 
 
+def test_errors_are_those_of_the_piston(found):
+    """A stuck encoder shows the motion of 20 mm at most; the piston goes to an end, 50 mm away."""
+    assert found['encoder_stuck', 'slow'].position_error > 0.045
+
+
 def test_the_matrix_has_a_row_a_fault_and_a_column_a_situation(found, tmp_path):
     head, *rows = as_text(list(found.values())).splitlines()
-    assert all(name in head for name in SITUATIONS) and len(rows) == 2
-    assert len(as_tree(list(found.values()))['situations']) == 8
+    assert all(name in head for name in SITUATIONS) and len(rows) == 3
+    assert len(as_tree(list(found.values()))['situations']) == 12
     page, = write_page(list(found.values()), tmp_path)
     assert 'trip sensor_range, 3 ms' in page.read_text()
 

@@ -99,6 +99,9 @@ def test_a_leg_has_three_turning_joints(sheet):
     contacts = tuple(replace(own, link=thigh) if own is foot else own for own in sheet.contacts)
     with pytest.raises(ConfigError, match=rf'{foot.name}: its leg has 2 joints'):
         Legs(replace(sheet, contacts=contacts))
+    others = tuple(own for own in sheet.contacts if own is not foot)
+    with pytest.raises(ConfigError, match='^number of feet = 3, must be 4$'):
+        Legs(replace(sheet, contacts=others))
 
 
 def test_the_error_of_the_attitude_is_the_turn_from_level():

@@ -102,7 +102,8 @@ def test_a_saved_trot_continues_with_the_same_bytes():
      'run: body'),
     ('quadruped', {}, 'program = None, must be a list of points'),
     ('quadruped', {'program': SHORT, 'dutty': 0.6}, 'controllers.trot.dutty is unknown'),
-    ('two_joint_leg', {'program': SHORT}, 'its leg has 3 joints (prismatic')])
+    ('two_joint_leg', {'program': SHORT}, "body = 'body': number of feet = 1, must be 4"),
+    ('crane_counterbalance', {'program': SHORT}, "trot.body = 'crane': number of feet = 0, must")])
 def test_refused_sections(config, section, message):
     run = isa_ros.load(config, changes={'controllers': {'trot': {
         'class': f'{Trot.__module__}:Trot', **section}}})
