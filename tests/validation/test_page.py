@@ -1,10 +1,11 @@
 """The table, the JSON and the page."""
 
 import json
+from pathlib import Path
 import re
 
 from isa_ros.text.json_file import write_tree
-from isa_ros.validation.page import as_text, as_tree, write_page
+from isa_ros.validation.page import _HEAD, as_text, as_tree, write_page
 from isa_ros.validation.runner import run_group
 import pytest
 from tests.validation.groups import GAINS, GOOD, KINDS, MISSED
@@ -85,3 +86,9 @@ def test_what_is_not_compared_is_listed(results, tmp_path):
     assert ('| Table 3 | Encoder Baud rate, ISA | 1 Mbps | in the variant `data_sheet_sensors` '
             'only') in page
     assert '| Table 3 | Max current, ISA | 125 mA | not modelled' in page
+
+
+def test_the_head_of_the_stored_page_is_that_of_the_code() -> None:
+    """Also what it says about measured data, which no run of the command repeats here."""
+    stored = (Path(__file__).parents[2] / 'docs' / 'validation.md').read_text(encoding='utf-8')
+    assert stored.startswith(_HEAD.rstrip())

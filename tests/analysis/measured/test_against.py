@@ -17,7 +17,7 @@ from isa_ros.controller import State
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
-from tests.analysis.measured.machine import CLOCK_PPM, measured
+from scripts.made_measurement import CLOCK_PPM, measured
 
 DURATION = 3.0  # of CORRELATION, 0.4 s, enough for an interval
 TRUE = {'actuators.ram.load.inertia': 65.0,

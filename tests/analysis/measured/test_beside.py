@@ -8,7 +8,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
 import numpy as np
 import pytest
-from tests.analysis.measured.machine import measured, Sweep
+from scripts.made_measurement import measured, Sweep
 
 
 def test_a_measurement_is_compared_with_the_bag_of_its_run(

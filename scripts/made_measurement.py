@@ -1,4 +1,4 @@
-"""A measurement that a test makes: a run with changed parameters, noise, and a fast clock."""
+"""A measurement of a machine that is a simulation: other parameters, noise, and a fast clock."""
 
 from collections.abc import Mapping
 import math
