@@ -6,24 +6,23 @@ position (m) or shaft angle (rad). Rows of `LOAD_PORT` and `LOAD_REPLY` arrays b
 run's actuators; ``rows`` are the indices of those that drive HAA, HFE and KFE.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.core.bound import Bound, Rebound
-from isa_ros.core.fields import Field, record_type, units_of
+from isa_ros.core.fields import Field
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import restored_body, saved_body
 from isa_ros.core.signals import LOAD_REPLY
-from isa_ros.core.timebase import FORCE_WINDOWS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.surroundings.bodies.kernel_body import KernelBody
 from isa_ros.surroundings.bodies.leg import stepping
 from isa_ros.surroundings.bodies.leg.inertial import IMU, Imu, imu_record
 from isa_ros.surroundings.bodies.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_FIELDS, LEG_SAMPLE
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, LegSheet
-from isa_ros.surroundings.clock import clock_of, NEVER
 from isa_ros.surroundings.inertial_unit import AXES, fields_of_unit
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
@@ -55,7 +54,7 @@ class Pose:
         return self.haa, self.hfe, self.kfe
 
 
-class Leg:
+class Leg(KernelBody):
     """
     Slider, three links and the ground, advanced tick by tick: a `Body`.
 
@@ -67,16 +66,11 @@ class Leg:
     def __init__(self, sheet: LegSheet, pose: Pose, step_ns: int,
                  rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None,
                  units: Sequence[InertialUnit] = ()) -> None:
-        steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
+        super().__init__(
+            step_ns, rows, sample_fields([unit.name for unit in units]), release_ns)
         self._refuse_pose(sheet, pose)
-        self.rows = np.array(rows, np.int64)
-        """Rows of the actuators that drive HAA, HFE and KFE, (3,)."""
-        self._release_ns = release_ns
-        self._clock = clock_of(step_ns, release_ns)
         self._constants = leg_record(sheet)
         self._state = rows_of(1, LEG_STATE)
-        self._fields = sample_fields([unit.name for unit in units])
-        self._sample = rows_of(1, record_type(self._fields))
         self._motion = self._sample.view(np.uint8)[:LEG_SAMPLE.itemsize].view(
             rows_of(1, LEG_SAMPLE).dtype)
         self._imus = np.array([imu_record(unit.sheet, unit.key) for unit in units], IMU)
@@ -85,9 +79,7 @@ class Leg:
             np.float64).reshape(-1, AXES)
         self.filling = Rebound(stepping.fill_ports, lambda ports: stepping.LegPorts(
             self._clock, self._state, self._constants, self.rows, ports))
-        """Of the ports: fills them for the next tick."""
         self.advancing = Rebound(stepping.advance, self._tick)
-        """Of the replies: advances by one tick; what it returns is for `refuse`."""
         self._start(pose)
 
     def _tick(self, replies: np.ndarray) -> stepping.LegTick:
@@ -123,11 +115,6 @@ class Leg:
         self._show.run()
 
     @property
-    def t_ns(self) -> int:
-        """Return the time the leg has reached, ns."""
-        return int(self._clock['t_ns'][0])
-
-    @property
     def actuator_forces(self) -> tuple[float, float, float]:
         """Return the sensor forces (N | Nm) the ports assume now; at t = 0 they hold the leg."""
         haa, hfe, kfe = self._state['force'][0].tolist()
@@ -140,20 +127,6 @@ class Leg:
             actuator_coordinate(float(self._state[f'q_{name}'][0]), self._constants[0][name])[0]
             for name in JOINTS)
         return haa, hfe, kfe
-
-    @property
-    def sample(self) -> np.ndarray:
-        """
-        Return the sample at the end of the last tick, (1,); overwritten by the next.
-
-        Its fields are `sample_fields`.
-        """
-        return self._sample
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """Return the unit of each field of the sample."""
-        return units_of(self._fields)
 
     @property
     def is_held(self) -> bool:
@@ -173,26 +146,6 @@ class Leg:
     def release(self) -> None:
         """Let the slider go from the next tick on."""
         self._state['is_held'] = 0.0
-
-    def ports(self, ports: np.ndarray) -> None:
-        """
-        Fill this leg's rows of ``ports`` (`LOAD_PORT`, shape (n_actuators,)) for the next tick.
-
-        The pressures in them are left as they are.
-        """
-        self.filling.to(ports).run()
-
-    def advance(self, replies: np.ndarray) -> None:
-        """
-        Advance by one tick under ``replies`` (`LOAD_REPLY`, shape (n_actuators,)).
-
-        Raises
-        ------
-        SimulationDiverged
-            A state is no longer finite.
-
-        """
-        self.refuse(self.advancing.to(replies).run())
 
     def refuse(self, found: int) -> None:
         """Raise what `advancing` has found; 0: nothing."""
@@ -222,10 +175,9 @@ class Leg:
             A number is not finite, or the time is not that of a tick.
 
         """
-        self._clock['t_ns'], self._state[:], self._sample[:] = restored_body(
+        t_ns, self._state[:], self._sample[:] = restored_body(
             snapshot, LEG_STATE, self._sample.dtype, int(self._clock['step_ns'][0]), 'leg')
-        self._clock['release_ns'] = (
-            NEVER if self._release_ns is None or not self.is_held else self._release_ns)
+        self._go_on_from(t_ns)
 
 
 def sample_fields(names: Sequence[str]) -> tuple[Field, ...]:

@@ -5,17 +5,17 @@ A robot as the shared load of its actuators: ports down, forces up.
 position (m) or shaft angle (rad). Force > 0 pushes the actuator out.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import math
 
 from isa_ros.core.bound import Bound, Rebound
-from isa_ros.core.fields import record_type, units_of
 from isa_ros.core.parameter import Parameters
-from isa_ros.core.record import float_columns, rows_of
+from isa_ros.core.record import float_columns
 from isa_ros.core.saved_state import restored_body, saved_body
 from isa_ros.core.signals import LOAD_REPLY
-from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.surroundings.bodies.kernel_body import KernelBody
 from isa_ros.surroundings.bodies.robot import stepping
 from isa_ros.surroundings.bodies.robot.holding import holding_forces
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
@@ -25,7 +25,6 @@ from isa_ros.surroundings.bodies.robot.records import (
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
-from isa_ros.surroundings.clock import clock_of, NEVER
 from isa_ros.surroundings.inertial_unit import AXES
 from isa_ros.surroundings.vectors import first_broken
 import numpy as np
@@ -33,7 +32,7 @@ import numpy as np
 ROUNDING = 1e-9     # of the length of a quaternion in a sheet
 
 
-class Robot:
+class Robot(KernelBody):
     """
     A tree of links on the ground under its actuators, advanced tick by tick: a `Body`.
 
@@ -52,13 +51,11 @@ class Robot:
     def __init__(self, sheet: RobotSheet, start: RobotStart, step_ns: int,
                  rows: Sequence[int] | None = None, release_ns: int | None = None,
                  units: Sequence[RobotUnit] = ()) -> None:
-        steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
-        _refuse_start(sheet, start)
         k = len(sheet.drives)
-        self.rows = np.array(range(k) if rows is None else rows, np.int64)
-        """Rows of its actuators, (k,)."""
-        self._release_ns = release_ns
-        self._clock = clock_of(step_ns, release_ns)
+        super().__init__(
+            step_ns, range(k) if rows is None else rows,
+            sample_fields(sheet, [unit.name for unit in units]), release_ns)
+        _refuse_start(sheet, start)
         self._is_free = sheet.is_free
         self._names = state_names(sheet)
         self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
@@ -68,8 +65,6 @@ class Robot:
         self._arrays = stepping.RobotRecords(
             *records, np.zeros(scratch_size(len(records[1]), k, n)))
         self._state = np.zeros(n + 4 * k + 1)
-        self._fields = sample_fields(sheet, [unit.name for unit in units])
-        self._sample = rows_of(1, record_type(self._fields))
         values = self._sample.view(np.float64)
         columns = float_columns(self._sample.dtype)
         self._shown = (
@@ -78,9 +73,7 @@ class Robot:
             np.array([columns[f'{name}_touches'] for name in self._ends_run], np.int64))
         self.filling = Rebound(stepping.fill_ports, lambda ports: stepping.RobotPorts(
             self._clock, self._state, self.rows, self._arrays, ports))
-        """Of the ports: fills them for the next tick."""
         self.advancing = Rebound(stepping.advance, self._tick)
-        """Of the replies: advances by one tick; what it returns is for `refuse`."""
         self._start(sheet, start)
 
     def _tick(self, replies: np.ndarray) -> stepping.RobotTick:
@@ -107,29 +100,10 @@ class Robot:
         return self._state[:len(self._names)]
 
     @property
-    def t_ns(self) -> int:
-        """Return the time the robot has reached, ns."""
-        return int(self._clock['t_ns'][0])
-
-    @property
     def actuator_forces(self) -> np.ndarray:
         """Return the sensor forces (k,) the ports assume now; at t = 0 they hold the robot."""
         forces: np.ndarray = kept_part(self._state, len(self.rows)).force.copy()
         return forces
-
-    @property
-    def sample(self) -> np.ndarray:
-        """
-        Return the sample at the end of the last tick, (1,); overwritten by the next.
-
-        Its fields are `isa_ros.surroundings.bodies.robot.sample.sample_fields`.
-        """
-        return self._sample
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """Return the unit of each field of the sample."""
-        return units_of(self._fields)
 
     @property
     def is_held(self) -> bool:
@@ -158,28 +132,6 @@ class Robot:
         root['push_force'] = push.push_x, push.push_y, push.push_z
         root['push_moment'] = push.push_roll, push.push_pitch, push.push_yaw
         root['is_pushed'] = push != Push()
-
-    def ports(self, ports: np.ndarray) -> None:
-        """
-        Fill its rows of ``ports`` (`LOAD_PORT`, shape (n_actuators,)) for the next tick.
-
-        The pressures in them are left as they are.
-        """
-        self.filling.to(ports).run()
-
-    def advance(self, replies: np.ndarray) -> None:
-        """
-        Advance by one tick under ``replies`` (`LOAD_REPLY`, shape (n_actuators,)).
-
-        Raises
-        ------
-        SimulationDiverged
-            A state is no longer finite.
-        RunError
-            A contact that ends the run touches the ground.
-
-        """
-        self.refuse(self.advancing.to(replies).run())
 
     def refuse(self, found: int) -> None:
         """Raise what `advancing` has found; 0: nothing."""
@@ -219,12 +171,11 @@ class Robot:
             A number is not finite, or the time is not that of a tick.
 
         """
-        self._clock['t_ns'], state, self._sample[:] = restored_body(
+        t_ns, state, self._sample[:] = restored_body(
             snapshot, self._saved_state, self._sample.dtype, int(self._clock['step_ns'][0]),
             'robot')
         self._state[:] = state['state'][0]
-        self._clock['release_ns'] = (
-            NEVER if self._release_ns is None or not self.is_held else self._release_ns)
+        self._go_on_from(t_ns)
 
     @property
     def _saved_state(self) -> np.dtype[np.void]:
