@@ -14,7 +14,7 @@ from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.surroundings.bodies.leg.leg import sample_fields
 from isa_ros.surroundings.kept_ports import port_fields
 from isa_ros.surroundings.mechanism_body import motion_fields
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 

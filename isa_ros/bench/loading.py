@@ -17,7 +17,7 @@ from typing import NamedTuple
 REPEATS = 3
 TIMEOUT_S = 120.0
 FLOOR, ACTUATOR = 'floor', 'actuator'
-_IMPORTS_OF_EVERY_NODE = ('numba', 'rclpy')
+_IMPORTS_OF_EVERY_NODE = ('numpy', 'rclpy.node')
 
 
 class Loading(NamedTuple):

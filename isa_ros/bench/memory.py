@@ -13,10 +13,10 @@ MIB = 1024.0 * 1024.0
 
 
 def memory_rows(outcomes: Outcomes) -> list[Row]:
-    """Return resident and proportional memory, compared with Python with numba and rclpy."""
+    """Return resident and proportional memory, compared with Python with numpy and rclpy.node."""
     loading = median_loading()
-    rows = [Row('floor: Python with numba and rclpy, resident', loading.floor_bytes / MIB, 'MiB',
-                'itself', 1.0)]
+    rows = [Row('floor: Python with numpy and rclpy.node, resident', loading.floor_bytes / MIB,
+                'MiB', 'itself', 1.0)]
     for spec in leg.SPECS:
         rows += _process_rows(spec, outcomes.of(spec), loading)
     return rows

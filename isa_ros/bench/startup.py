@@ -17,7 +17,7 @@ def startup_rows(outcomes: Outcomes) -> list[Row]:
     """Return the time to tick 0 with its parts, and that of one actuator's process alone."""
     loading = median_loading()
     rows = [
-        Row('floor: Python imports numba and rclpy', loading.floor, 's', 'itself', 1.0),
+        Row('floor: Python imports numpy and rclpy.node', loading.floor, 's', 'itself', 1.0),
         *_alone(loading)]
     for spec in SPECS:
         rows += _rows(spec, outcomes, loading.floor)

@@ -7,7 +7,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import SAMPLE
 from isa_ros.run.link_packing import Links, pack_links, time_word_of
 from isa_ros.run.supply_messages import SIGNALS
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from msg_adapters.template import FIRST_VALUE
 import numpy as np
 

@@ -16,7 +16,7 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log, LogSink
 from isa_ros.simulation import Simulation
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 from isa_ros.text.progress import Progress
 from isa_ros.tick.trips import Trip, trips_of
 import numpy as np

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from isa_ros.core.bound import Bound, Rebound
-from isa_ros.core.fields import Field, record_type
 from isa_ros.core.parameter import nested, parameter, Parameters
 from isa_ros.core.record import floats
 from isa_ros.core.saved_state import broken_number
@@ -35,6 +34,7 @@ from isa_ros.surroundings.dump import dump_fields, LagDump, NoneDump
 from isa_ros.surroundings.return_line import (
     HeldReturn, RETURN_LINE, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
 from isa_ros.surroundings.supply_port import MovingPort, PORT_STEPS
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_tick import held_pressure, SupplyRecords
 import numpy as np
 
@@ -61,31 +61,6 @@ def is_dumped(sheet: SupplySheet) -> bool:
     if isinstance(sheet, CircuitSupply):
         return sheet.is_switched
     return not isinstance(sheet.dump, NoneDump)
-
-
-SUPPLY_FIELDS = (
-    Field('pressure', 'Pa', 'gauge'),
-    Field('return_pressure', 'Pa', 'gauge'),
-    Field('pump_flow', 'm3/s', '0 for an ideal supply'),
-    Field('drawn', 'm3', 'volume drawn by the actuators since t = 0'),
-    Field('returned', 'm3', 'volume returned by the actuators since t = 0'),
-    Field('power', 'W', 'of the oil drawn less that returned, mean over the tick'),
-    Field('peak_power', 'W', 'greatest power since t = 0'),
-    Field('energy', 'J', 'integral of the power since t = 0'),
-    Field('pump_energy', 'J', 'of the pump since t = 0'),
-    Field('relief_energy', 'J', 'lost through relief and dump valve since t = 0'),
-    Field('return_energy', 'J', 'lost on the way of returned oil to the tank since t = 0'),
-    Field('stored_energy', 'J', 'in accumulator and lines, more than at t = 0'),
-    Field('held_energy', 'J', 'paid at pressures held over a tick, not given by a line'),
-    Field('dump_opening', '1', 'of the dump valve: 0 shut, 1 open'),
-    Field('gas_temperature', 'celsius', 'of an accumulator of a circuit; 0 of all else'),
-    Field('oil_temperature', 'celsius', 'of a circuit whose tank has a heat; 0 of all else'),
-    Field('heat', 'J', 'that its oil got of losses since t = 0; of tank and coolers: gave away'),
-)
-"""The sample of one supply at the end of a tick."""
-SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
-SUPPLY_STATE = record_type(SUPPLY_FIELDS[:-3])
-"""What a saved state has of it: a circuit has temperatures and heat in its own state."""
 
 
 def saved_states(samples: Records, names: Sequence[str]) -> bytes:

@@ -20,8 +20,9 @@ from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, Si
 from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.emergency_line import changing_line
 from isa_ros.surroundings.feeding import made, n_samples, summed, SupplyCircuit
-from isa_ros.surroundings.supply import saved_states, Supply, SUPPLY_SAMPLE, SUPPLY_STATE
+from isa_ros.surroundings.supply import saved_states, Supply
 from isa_ros.surroundings.supply_port import SupplyPorts
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_tick import Answers, keep_answers
 import numpy as np
 

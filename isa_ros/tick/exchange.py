@@ -1,16 +1,18 @@
 """Rows that surroundings, actuators and controllers exchange at a tick; who carries and takes."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TYPE_CHECKING
 
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.rows import memory_of
 from isa_ros.core.bound import Part
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
-from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:   # an actuator has rows too, and no surroundings
+    from isa_ros.surroundings.surroundings import Surroundings
 
 IDLE_S = 0.005
 """Host time between two checks for requests while a run is paused."""
@@ -40,7 +42,7 @@ class Rows:
     """
 
     def __init__(
-            self, n_actuators: int, surroundings: Surroundings,
+            self, n_actuators: int, surroundings: 'Surroundings',
             group: ActuatorGroup | None = None) -> None:
         written = memory_of(n_actuators) if group is None else group
         self.ports: Records = (

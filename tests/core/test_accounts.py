@@ -3,7 +3,7 @@
 from isa_ros.core.accounts import (
     accounts_of, ENERGY, HELD, MEAN, OIL, PEAK, PUMP, RETURN, RETURNED, SHARES, SUPPLY_SHARES)
 from isa_ros.core.signals import SAMPLE
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 import numpy as np
 import pytest
 

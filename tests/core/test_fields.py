@@ -4,7 +4,7 @@ from isa_ros.core.fields import Field, record_type, units_of
 from isa_ros.core.signals import SAMPLE, SAMPLE_FIELDS
 from isa_ros.core.units import in_si
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_FIELDS
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 import pytest
 

@@ -26,7 +26,7 @@ from isa_ros.run.wire.steps import (
     encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
     encode_tick)
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_SAMPLE
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import Rows
 import numpy as np
 from tests.fuzz.bytes_of import altered

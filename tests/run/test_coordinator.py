@@ -13,7 +13,7 @@ from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.surroundings.body import Body
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import IDLE_S, Rows
 from isa_ros.tick.tick_loop import TickLoop
 from msg_adapters import event

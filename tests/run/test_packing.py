@@ -12,7 +12,7 @@ from isa_ros.run.output import packer_of
 from isa_ros.run.pack_kernel import pack
 from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows
 from msg_adapters import event
 from msg_adapters.actuator_messages import TOPICS

@@ -13,7 +13,7 @@ from isa_ros.run.wire.steps import (
     decode_step, encode_begin, encode_change, encode_end, encode_hello, encode_restore,
     encode_save, encode_tick, StepKind)
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_SAMPLE
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest

@@ -13,7 +13,8 @@ from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDive
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState
 from isa_ros.surroundings.feeding import SupplyCircuit
-from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_STATE
+from isa_ros.surroundings.supply import ConstantSupply
+from isa_ros.surroundings.supply_sample import SUPPLY_STATE
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 import pytest

@@ -6,7 +6,7 @@ from typing import Any
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT, SAMPLE
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.calling import calling, CallingTransport
 import numpy as np
 import pytest

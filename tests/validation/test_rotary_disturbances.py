@@ -9,7 +9,7 @@ from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.scenario.scenario import idle
 from isa_ros.scripting.result import Log, Result
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.validation.rotary_disturbances import (
     blocked_peak, dropped, fall_time, Impact, impacts, onsets)
 import numpy as np

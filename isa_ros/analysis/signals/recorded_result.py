@@ -18,7 +18,7 @@ from isa_ros.run.recorded import history_of
 from isa_ros.scenario.scenario import idle, Scenario, scenario_of
 from isa_ros.scripting.log import Log
 from isa_ros.scripting.result import Result
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from msg_adapters import diagnostics
 from msg_adapters.actuator_messages import APPLIED_SETPOINT
 from msg_adapters.cdr import CdrError

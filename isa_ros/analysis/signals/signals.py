@@ -19,7 +19,7 @@ from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.body_messages import by_field
 from isa_ros.scripting.result import Result
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 from msg_adapters.coordinator_messages import supply_topic
 import numpy as np
 from numpy.typing import NDArray

@@ -12,7 +12,7 @@ from isa_ros.export.chosen import Chosen, value_of
 from isa_ros.export.fmi.inputs import inputs
 from isa_ros.export.fmi.tuned import Tuned
 from isa_ros.export.fmi.variables import Home, Role, Type, Variable
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 
 _ENUMERATED = {

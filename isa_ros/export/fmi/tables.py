@@ -12,7 +12,7 @@ from isa_ros.export.layout import ALIGNED
 from isa_ros.export.tables import number, quoted
 from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.wiring import possible_modes
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 
 _NOT_OF_A_WORD = re.compile('[^A-Z0-9]')

@@ -24,7 +24,7 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, TOPICS
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE

@@ -1,24 +1,13 @@
 """A process with one actuator: with a coordinator, or alone."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 import gc
 
-from isa_ros.config.assembly import timing_of
-from isa_ros.config.models.catalogue import actuator_model, model_names
-from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.runs.acceptance import ACCEPT_ALL
-from isa_ros.config.runs.default_actuator import default_actuator, default_load, DEFAULT_TIMING
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import load_run
-from isa_ros.config.text.changes import changes_of
-from isa_ros.config.text.names import placed
+from isa_ros.config.models.catalogue import model_names
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
-from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
-from isa_ros.nodes.lockstep.roles import ActuatorRole
-from isa_ros.nodes.lockstep.steady_ticks import steady_ticks
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.domain import Claim
@@ -27,7 +16,6 @@ from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.ending import DONE, end_of
 from isa_ros.processes.stopping import end_with_parent, StopRequest
 from isa_ros.run.compiling import reported_compilation
-from isa_ros.scenario.scenario import planned
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -65,9 +53,8 @@ def _run(model: str, should_stop: StopRequest) -> None:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
             refuse_off(node.setup.config.name)
-            role = ActuatorRole(node)
-            ParticipantEnd(node, role, node.setup.config.name, steady_ticks(node, role)).spin(
-                should_stop)
+            from isa_ros.nodes.actuator.in_lockstep import take_part    # one alone needs none
+            take_part(node, should_stop)
         else:
             claim = Claim(node.get_namespace(), node.get_name())
             try:
@@ -94,11 +81,8 @@ def _resolve(node: Node, model: str) -> NodeSetup:
         declare(node, name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
-        changes = changes_of(node.get_parameter_or('set').value or ())
-        run = load_run(find(path, CONFIG), changes.run)
-        scenario = _text(node, 'scenario_file')
-        run = planned(find(scenario, SCENARIOS) if scenario else None, run, changes).run
-        return _from_run(run, _name_in(run, node), chosen, _boolean(node, 'lockstep'))
+        from isa_ros.nodes.actuator.of_run import setup_of  # and all that a run may have
+        return setup_of(node, path, _text(node, 'scenario_file'), chosen)
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
     if not chosen:
@@ -107,26 +91,6 @@ def _resolve(node: Node, model: str) -> NodeSetup:
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')
     return NodeSetup(default_actuator(chosen, node.get_name()), DEFAULT_TIMING)
-
-
-def _name_in(run: RunConfig, node: Node) -> str:
-    """Return the name of a node in a run, with its namespace if that is a robot's."""
-    name: str = node.get_name()
-    robot = placed(node.get_namespace().rpartition('/')[2], name)
-    return robot if any(own.name == robot for own in run.actuators) else name
-
-
-def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeSetup:
-    config = run.actuator(name)
-    if model not in ('', config.model):
-        raise ConfigError(
-            f'{run.source}: {name} has model {config.model}, the parameter model = {model!r}')
-    if config.load is None and not in_lockstep:
-        model_of = actuator_model(config.model, name)
-        config = replace(config, load=default_load(model_of, config.sheet))
-    # Alone it has no scenario that could command it.
-    return NodeSetup(
-        config, timing_of(run), accept=run.accept if in_lockstep else ACCEPT_ALL)
 
 
 def _text(node: Node, name: str) -> str:

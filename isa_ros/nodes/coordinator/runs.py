@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from isa_ros.actuator.constants import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.config.text.names import parted, placed
+from isa_ros.nodes.actuator import in_lockstep, of_run  # noqa: F401, loaded before forks
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.actuator.process import run
 from isa_ros.nodes.coordinator.joint_commands import JointCommands

@@ -10,7 +10,7 @@ from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
     is_finite, joined, Parts, refuse_command, split, tuned_of, tuned_part)
 from isa_ros.run.wire.roster import Roster
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows
 import numpy as np
 

@@ -22,8 +22,8 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.circuits.stiffness import steps_of
 from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 import numpy as np
 from numpy.typing import NDArray
 

@@ -15,7 +15,7 @@ from isa_ros.export.chosen import Chosen
 from isa_ros.export.fmi.description import Version
 from isa_ros.export.fmi.inputs import PORT_FIELDS
 from isa_ros.export.fmi.unit import archive, Made, made, parts_of
-from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 
 MOTIONS = parse("""

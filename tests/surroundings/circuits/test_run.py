@@ -13,7 +13,7 @@ from isa_ros.replay.replay import recorded_inputs
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE, SUPPLY_STATE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.tick.trips import TripWarning
 import numpy as np
 import pytest

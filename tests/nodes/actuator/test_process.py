@@ -1,0 +1,52 @@
+"""What a process with one actuator loads."""
+
+import json
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+OF_RUNS = (
+    'isa_ros.config.assembly', 'isa_ros.config.robots', 'isa_ros.config.runs.body_kinds',
+    'isa_ros.config.runs.run_config', 'isa_ros.nodes.lockstep', 'isa_ros.run.wire',
+    'isa_ros.scenario', 'isa_ros.surroundings.bodies', 'isa_ros.surroundings.circuits',
+    'isa_ros.surroundings.surroundings', 'isa_ros.surroundings.supply')
+"""What a run may have beside an actuator."""
+ALONE = """
+import json, sys
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.nodes.actuator import process
+SmartActuator(default_actuator('isa_v5', 'isa_v5'), DEFAULT_TIMING)
+print(json.dumps(sorted(sys.modules)))
+"""
+LOADING = 'import json, sys; import isa_ros.nodes.{}; print(json.dumps([*sys.modules]))'
+
+
+def loaded(program: str) -> set[str]:
+    """Return the modules that a program loads in a process of its own."""
+    return set(json.loads(subprocess.run(
+        [sys.executable, '-c', program], cwd=ROOT, check=True, capture_output=True,
+        text=True).stdout))
+
+
+def test_an_actuator_alone_loads_nothing_of_runs():
+    modules = loaded(ALONE)
+    assert {'rclpy.node', 'isa_ros.nodes.actuator.alone', 'isa_ros.actuator.kernel'} <= modules
+    assert [name for name in modules for own in OF_RUNS
+            if name == own or name.startswith(f'{own}.')] == []
+
+
+@pytest.mark.parametrize(('module', 'expected'), [
+    ('actuator.in_lockstep', {'isa_ros.nodes.lockstep.participant_end', 'isa_ros.run.wire.parts'}),
+    ('actuator.of_run', {'isa_ros.config.runs.run_config', 'isa_ros.scenario.scenario'})])
+def test_one_of_a_run_loads_that_too(module, expected):
+    """Else the names above are no longer those of modules."""
+    assert expected <= loaded(LOADING.format(module))
+
+
+def test_what_forked_actuators_need_is_loaded_before():
+    modules = loaded(LOADING.format('coordinator.runs'))
+    assert {f'isa_ros.nodes.actuator.{name}' for name in ('in_lockstep', 'of_run')} <= modules
