@@ -25,7 +25,7 @@ def test_the_page_itself_gets_its_path():
     {'path': '/'}, {'path': '/frames'}, {'path': f'/{OWN.token}'}, {'path': '//frames'},
     {'path': f'/{OWN.token[:-1]}/frames'}, {'path': f'/{OWN.token}\xe9/frames'},
     {'path': f'http://127.0.0.1:4711/{OWN.token}/frames'},
-    {'hosts': []}, {'hosts': HOST * 2}, {'hosts': ['127.0.0.1']}, {'hosts': ['evil.org:4711']},
+    {'hosts': []}, {'hosts': HOST * 2}, {'hosts': ['127.0.0.1']}, {'hosts': ['evil.org:4711']}, {'hosts': ['0.0.0.0:4711']},
     {'hosts': ['127.0.0.1:4712']}, {'hosts': ['127.0.0.1.evil.org:4711']},
     {'origins': []}, {'origins': ORIGIN * 2}, {'origins': ['http://evil.org']},
     {'origins': ['null']}, {'origins': ['https://127.0.0.1:4711']},

@@ -2,6 +2,7 @@
 
 import isa_ros
 from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.core.changing_values import OVER
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.errors import ConfigError
 from isa_ros.view.controls import Controls
@@ -107,6 +108,10 @@ def test_a_setpoint_keeps_what_was_set_before():
     rig.order('setpoint', 'ram', 'damping', 777.0)
     applied = rig.tick().applied
     assert (applied.effort, applied.position, applied.damping) == (60.0, 0.03, 777.0)
+    rig.order('setpoint', 'ram', 'position', 0.033)     # both before one tick
+    rig.order('setpoint', 'ram', 'effort', 61.0)
+    applied = rig.tick().applied
+    assert (applied.effort, applied.position) == (61.0, 0.033)
     rig.controls.restart()
     rig.order('setpoint', 'ram', 'position', 0.04)
     assert rig.tick().applied.effort == 0.0
@@ -139,6 +144,14 @@ def test_a_fault_that_ends_gives_back_the_one_beneath():
         1.0, 2.0, 2.0]
     assert rig.controls.state()['faults'] == [('rotor', 'coils_open')]
     assert after('coil_open', False) == 2.0     # it is off already
+
+
+def test_a_fault_of_a_scenario_stays_when_the_page_switches_off_what_is_not_on():
+    rig, key = Rig('rig_rotary'), 'plant.coil.open_coils'
+    rig.group.actuators[0].tune({f'{OVER}{key}': 1.0})
+    rig.tick()
+    rig.order('fault', 'rotor', 'coil_open', False)
+    assert rig.tick().parameter(key) == 1.0
 
 
 def test_a_supply_has_the_faults_of_its_kind():

@@ -41,6 +41,15 @@ def test_of_many_ticks_an_even_part_is_there(n, every):
     assert len(found.values) <= MOST
 
 
+def test_after_a_thinned_frame_all_ticks_are_there_again():
+    own = gathered(range(1000))
+    assert own.take().every == 4
+    for tick in range(1000, 1007):
+        own.row(tick)[:] = tick, 0
+    found = own.take()
+    assert (found.first, found.every, len(found.values)) == (1000, 1, 7)
+
+
 def test_a_frame_is_one_event_with_its_numbers():
     values = np.array([[1.5, np.nan], [2.5, -3e38]], np.float32)
     frame = frame_of(Samples(12, 4, values), tick=16, answers=[])

@@ -5,11 +5,12 @@ import json
 from pathlib import Path
 
 import isa_ros
+from isa_ros.bag.reader import Bag
 from isa_ros.view.orders import order_of
 from isa_ros.view.playing import Player
 import numpy as np
 import pytest
-from tests.bag.golden import GOLDEN
+from tests.bag.golden import GOLDEN, rewrite
 
 BAG = GOLDEN / 'leg_touchdown'
 
@@ -108,3 +109,15 @@ def test_what_few_messages_have_is_held_and_what_none_has_is_missing(tmp_path):
     angle = rows[:, knee['channels'][0]]
     assert len(set(angle.tolist())) == pytest.approx(4, abs=1)
     assert (angle[11:19] == angle[11]).all()
+
+
+def test_before_its_first_sample_a_channel_is_missing(tmp_path):
+    """And never has a later one."""
+    bag = rewrite(Bag(GOLDEN / 'rotor_step'), tmp_path / 'bag', lambda topic, sequence, data: (
+        None if topic == '/rotor/valve' and sequence < 5 else data))
+    page, after = played(bag)
+    spool = next(panel for panel in page['groups'][0]['panels'] if panel['label'] == 'spool, mm')
+    rows = after(0.0201)['rows'][:, spool['curves'][0]['channel']]
+    assert np.isnan(rows[:5]).all() and not np.isnan(rows[5:]).any()
+    np.testing.assert_array_equal(
+        rows[5:], isa_ros.read(GOLDEN / 'rotor_step')['rotor.spool'][5:21].astype('<f4'))

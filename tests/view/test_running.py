@@ -161,6 +161,14 @@ def test_pause_step_and_speed(tmp_path):
     assert replay(lived.bag).is_equal
 
 
+def test_a_step_of_a_run_that_goes_on_pauses_it(tmp_path):
+    lived = Lived(tmp_path / 'bag', {
+        10: [{'what': 'step', 'value': 2}], 12: [{'what': 'pause', 'value': False}]})
+    assert [(own['is_done'], own['tick']) for own in lived.answers] == [(True, 10), (True, 12)]
+    assert {own['tick'] for own in lived.frames if own['is_paused']} <= {12}
+    assert isa_ros.read(lived.bag.path).time[-1] == 0.05
+
+
 def test_a_restart_begins_another_bag(tmp_path):
     """At t = 0 and without what lay over values; the second bag is that of a run by itself."""
     lived = Lived(tmp_path / 'bag', {

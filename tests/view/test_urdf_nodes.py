@@ -60,6 +60,13 @@ def test_a_joint_without_a_channel_rests_and_a_free_root_moves():
     assert {node.parent for node in nodes[2:] if node.name in ('boom', 'plate')} == {3}
 
 
+def test_a_joint_without_an_axis_turns_about_x():
+    text = ARM.replace('<axis xyz="0 3 4"/>', '')
+    boom = next(node for node in urdf_nodes(text, 'arm', moved(lift='a'), 0)
+                if node.name == 'boom')
+    assert (boom.motion, boom.axis) == (Motion.TURN, [1.0, 0.0, 0.0])
+
+
 def test_nodes_are_told_in_json_by_the_places_of_their_channels():
     nodes = urdf_nodes(ARM, 'arm', moved(lift='a', out='b'), 0)
     tree = {own['name']: own for own in tree_of(nodes, {'b': 5, 'a': 3})}
