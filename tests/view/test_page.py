@@ -18,7 +18,9 @@ from isa_ros.scripting.result import Result
 from isa_ros.view.playing import Player
 from isa_ros.view.running import view_run
 from isa_ros.view.server import serving
+import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from tests.bag.golden import GOLDEN, rewrite
 from tests.browser import Browser, chromium
 
@@ -142,6 +144,91 @@ def test_the_pose_is_that_of_the_joints(browser, drop):
             }))""")
     # angles and height are float32: 1e-7 of about 1 m
     assert [x, y, z] == pytest.approx(result['body.foot_position'][150].tolist(), abs=1e-6)
+
+
+def test_frames_turn_and_slide_as_their_channels_say(browser):
+    """A free root, a joint about an oblique axis and a slider, against rotations of scipy."""
+    place, own = [0.3, -0.2, 0.7], Rotation.from_euler('xyz', [0.4, -0.7, 1.1])
+    axis = np.array([2.0, -1.0, 2.0]) / 3.0
+    nodes = [
+        {'parent': -1, 'place': [0.0, 1.5, 0.0], 'motion': 'fixed', 'channels': []},
+        {'parent': 0, 'place': [0.0] * 3, 'motion': 'free', 'channels': [*range(7)]},
+        {'parent': 1, 'place': place, 'motion': 'turn', 'axis': axis.tolist(), 'channels': [7],
+         'rotation': own.as_matrix().ravel().tolist()},
+        {'parent': 2, 'place': [0.1, 0.2, 0.3], 'motion': 'slide', 'axis': [0.0, 0.6, 0.8],
+         'channels': [8], 'rotation': own.as_matrix().ravel().tolist()}]
+    nodes = [{'name': '', 'shapes': [], 'reach': 0, 'axis': [0.0, 0.0, 1.0],
+              'rotation': np.eye(3).ravel().tolist(), **node} for node in nodes]
+    free = Rotation.from_euler('xyz', [-0.3, 0.5, 2.0])
+    pose = [1.0, 2.0, 3.0, *free.as_quat()[[3, 0, 1, 2]], 0.9, 0.25]
+    with played(GOLDEN / 'rotor_step') as url:
+        browser.visit(url)
+        frames = browser.run("""
+            const stage = new Stage(document.createElement('div'), arguments[0]);
+            stage.pose(channel => arguments[1][channel]);
+            return stage.frames.map(own => [own.place, own.turn])""", nodes, pose)
+    joint = free * own * Rotation.from_rotvec(0.9 * axis)
+    trunk = np.array([1.0, 3.5, 3.0])
+    link = trunk + free.apply(place)
+    tip = link + joint.apply(np.array([0.1, 0.2, 0.3]) + own.apply([0.0, 0.15, 0.2]))
+    for (at, turn), expected, rotation in zip(frames[1:], (trunk, link, tip), (
+            free, joint, joint * own)):
+        np.testing.assert_allclose(at, expected, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(
+            np.reshape(turn, (3, 3)), rotation.as_matrix(), rtol=0.0, atol=1e-12)
+
+
+def test_patches_look_outwards_and_cover_their_shapes(browser):
+    """Their areas add up to those of box, cylinder and sphere of 20 sides and 8 rings."""
+    with played(GOLDEN / 'rotor_step') as url:
+        browser.visit(url)
+        found = browser.run("""
+            return arguments[0].map(shape => patchesOf(shape, 0.1).map(points => {
+              const n = normalOf(points), middle = scaled(points.reduce(add), 1 / points.length);
+              let area = 0;
+              for (let k = 1; k + 1 < points.length; k++) {
+                const u = add(points[k], scaled(points[0], -1));
+                const v = add(points[k + 1], scaled(points[0], -1));
+                area += Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                   u[0] * v[1] - u[1] * v[0]) / 2;
+              }
+              return [dot(n, middle) > 0, area];
+            }))""", [{'kind': 'box', 'size': [0.3, 0.5, 0.7]},
+                     {'kind': 'cylinder', 'size': [0.2, 0.9]}, {'kind': 'sphere', 'size': [0.4]}])
+    side = 2 * 20 * 0.2 * np.sin(np.pi / 20)
+    exact = [2 * (0.15 + 0.21 + 0.35), side * 0.9 + 20 * 0.04 * np.sin(np.pi / 10),
+             4 * np.pi * 0.16]
+    for patches, area, tolerance in zip(found, exact, (1e-9, 1e-9, 0.05)):
+        assert all(is_outward for is_outward, _ in patches)
+        assert sum(own for _, own in patches) == pytest.approx(area, rel=tolerance)
+
+
+def test_missing_frames_are_a_gap_and_another_begin_forgets(browser):
+    """In the store of the page; the grid finds the sample of a time."""
+    with played(GOLDEN / 'rotor_step') as url:
+        browser.visit(url)
+        found = browser.run("""
+            const store = new Store(2, 0.5), told = [];
+            const frame = (first, every, ...values) => store.add({ first, every,
+              n: values.length / 2,
+              y: btoa(String.fromCharCode(...new Uint8Array(new Float32Array(values).buffer))) });
+            const tell = () => told.push([[...store.ticks.slice(0, store.n)],
+              [...store.columns[1].slice(0, store.n)].map(v => Number.isNaN(v) ? null : v)]);
+            frame(10, 1, 1, 2, 3, 4);
+            frame(12, 2, 5, 6, 7, 8);
+            frame(20, 1, 9, 10);
+            tell();
+            told.push([store.grid.at(6.9), store.grid.t(3)]);
+            frame(4, 1, 11, 12);
+            tell();
+            for (let k = 0; k < 70000; k += 1000) {
+              frame(100 + k, 1, ...Array.from({ length: 2000 }, (_, i) => k + (i >> 1)));
+            }
+            told.push([store.n <= 60000, store.ticks[store.n - 1], store.last[0]]);
+            return told""")
+    assert found == [
+        [[10, 11, 12, 14, 15, 20], [2, 4, 6, 8, None, 10]], [3, 7.0], [[4], [12]],
+        [True, 70099, 69999]]
 
 
 def test_a_source_is_chosen_and_its_curves_have_their_values(browser):
