@@ -1,8 +1,11 @@
 """Environments with the oldest and newest versions: what is asked for, found, told and written."""
 
 from pathlib import Path
+import re
 import zipfile
 
+from packaging.requirements import Requirement
+from packaging.version import Version
 import pytest
 from scripts import check_environments
 from scripts.environments import environment, interpreters
@@ -236,3 +239,29 @@ def test_a_wheel_that_cannot_be_built_is_one_line(
     monkeypatch.setattr(check_environments, 'outcome', lambda *given: BAD)
     assert check_environments.main([]) == 3
     assert capsys.readouterr().err == 'check_environments: no wheel: no\n'
+
+
+def table() -> list[dict[str, str]]:
+    """Return the rows of the page, by their header."""
+    page = check_environments.PAGE.read_text(encoding='utf-8')
+    rows = [[cell.strip() for cell in line.strip('|').split('|')] for line in re.search(
+        '<!-- environments -->\n\n(.*?)\n\n<!-- end', page, re.DOTALL)[1].splitlines()]
+    assert rows[0] == check_environments.HEADER
+    return [dict(zip(rows[0], row, strict=True)) for row in rows[2:]]
+
+
+def test_the_page_has_each_python_with_both_and_nothing_failed() -> None:
+    assert [(row['Python'], row['versions']) for row in table()] == [
+        (python, versions) for python in interpreters.PYTHONS for versions in (LOWEST, NEWEST)]
+    assert [row for row in table() if not all(
+        re.fullmatch(r'\d+ s', row[check]) for check in check_environments.HEADER[7:])] == []
+
+
+def test_the_declared_lowest_versions_are_those_that_were_tried() -> None:
+    """With the oldest Python, which has a file of each; a bound that is raised is to be tried."""
+    setup = (check_environments.ROOT / 'setup.py').read_text(encoding='utf-8')
+    declared = [Requirement(text) for text in re.findall(r"'([\w-]+>=[\d.]+)'", setup)]
+    bounds = {one.name: next(iter(one.specifier)).version for one in declared}
+    oldest = table()[0]
+    for package in check_environments.SHOWN:
+        assert Version(oldest[package]).release[:2] == Version(bounds[package]).release, package
