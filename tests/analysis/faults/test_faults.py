@@ -70,27 +70,6 @@ def test_a_low_supply_is_warned_of(found):
         ('warning', 'supply_low'), ('warning', 'force_error')]
 
 
-def test_errors_are_those_of_the_piston_and_not_of_what_the_sensors_read(found):
-    """
-    A stuck encoder reads what it read: the reading differs by the motion of 20 mm at most.
-
-    The loops drive the piston into the end of its stroke meanwhile, 50 mm away. A load cell that
-    reads 1000 N too much makes the loops push by as much less.
-    """
-    stuck = found['encoder_stuck']
-    assert 'position' in signals(stuck) and stuck.position_error > 0.05
-    assert all(abs(one.largest) < 0.041 for one in stuck.visible if one.signal == 'position')
-    offset, read = found['load_cell_offset'], 1000.0
-    assert 0.5 * read < offset.force_error < read
-    assert [one.largest > read for one in offset.visible if one.signal == 'force'] == [True]
-
-
-def test_a_fault_costs_what_the_sound_run_has_not_while_it_lasts(found):
-    """A noisy sensor of a pressure that no loop uses moves nothing; a frozen program stands."""
-    assert found['pressure_a_noisy'].position_error == 0.0 == found['pressure_a_noisy'].force_error
-    assert 0.02 < found['reu_frozen'].position_error < 0.041
-
-
 def noticed(own: FaultEffect) -> dict[str, float]:
     """Return what the device itself reports, with the time of each in ms, rounded."""
     return {f'{one.kind} {one.name}': round(one.after_s * 1e3) for one in own.noticed}
@@ -139,8 +118,6 @@ def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
         assert f'Faults of parts: {rig.replace("_", " ")}' in path.read_text()
         assert about in ' '.join(path.read_text().split())
     by_name = {one['name']: one for one in tree}
-    assert by_name['null_shift']['position_error'] == found['null_shift'].position_error > 0.004
-    assert by_name['null_shift']['force_error'] == found['null_shift'].force_error > 800.0
     assert (by_name['pump_worn']['part'], by_name['pump_worn']['part_set'], by_name[
         'pump_worn']['rig']) == ('pump', {'worn_lpm_per_mpa': 1.0}, 'circuit')
     assert f'{VISIBLE:g} steps' in path.read_text() and CHANNELS[0] in path.read_text()
