@@ -175,6 +175,19 @@ def test_warm_oil_is_thinner_and_softer_in_the_hose_too():
         math.pi / 4.0 * 1e-4 * 2.0 / (0.9 * sheets) + 1.5e-6 * 2.0 / 20e6, rel=1e-12, abs=0.0)
 
 
+def test_thin_oil_is_turbulent_at_less_flow():
+    """C41 with a quarter of the viscosity: at Re 5000 of it, which is 1250 of the sheet's oil."""
+    own, thin = row(), replace(SHEET, viscosity_mm2_per_s=0.25 * 46.0)
+    hose.warm_hoses(0.25, float(own.beta), own)
+    flow = 1250.0 * math.pi * 0.01 * 46e-6 / 4.0
+    drop = smooth_drop(thin, flow)
+    assert drop > 1.5 * 0.25 * smooth_drop(SHEET, flow)
+    assert series_flow(drop, 0.0, 0.0, own) == pytest.approx(flow, rel=1e-9, abs=0.0)
+    rise = (series_flow(1.0001 * drop, 0.0, 0.0, own)
+            - series_flow(0.9999 * drop, 0.0, 0.0, own)) / (2e-4 * drop)
+    assert 1.0 / series_slope(drop, 0.0, own) == pytest.approx(rise, rel=1e-6, abs=0.0)
+
+
 @pytest.mark.parametrize('values, message', [
     ({'rated_lpm': 40.0}, 'rated_lpm = 40 l/min and rated_drop_mpa = 0 MPa, must both be 0'),
     ({'rated_drop_mpa': 1.0}, 'rated_lpm = 0 l/min and rated_drop_mpa = 1 MPa'),
