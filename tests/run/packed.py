@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from isa_ros.core.device import FIELDS
 from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.run.packing import Packer
-from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 import numpy as np
 

@@ -9,18 +9,18 @@ then advances over the same interval with the mean flows. Equation E12.
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from isa_ros.core.bound import Bound
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError, RunError
-from isa_ros.surroundings.circuits.network import (
-    circuit_advance, circuit_rates, WORK_ROWS)
-from isa_ros.surroundings.circuits.nodes import (
-    feeding_capacity, gas_volume, node_energy, node_pressure)
+from isa_ros.surroundings.circuits.network import WORK_ROWS
+from isa_ros.surroundings.circuits.nodes import gas_volume, node_energy, node_pressure
 from isa_ros.surroundings.circuits.plan import Network, network_of
 from isa_ros.surroundings.circuits.rest import at_rest, of_return
-from isa_ros.surroundings.circuits.rows import rows_of_circuit, show
+from isa_ros.surroundings.circuits.rows import rows_of_circuit
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
-from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.circuits.stiffness import steps_of
+from isa_ros.surroundings.circuits.ticking import (
+    advance, FED, fill_nodes, Flowing, Ports, show_rows, Shown)
 from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
 from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
@@ -72,6 +72,8 @@ class Circuit:
         self._work = np.zeros((WORK_ROWS, len(self.state)))
         self._rates = np.zeros(len(self.state))
         self._held = np.zeros(len(network.nodes))
+        self._flows = np.zeros(len(network.nodes))
+        self._ports = np.zeros((len(fed), FED))
         self._none = np.zeros(len(network.nodes))
         self._stored = np.zeros(len(self._first))
         self._is_return = of_return(sheet, network)
@@ -88,9 +90,22 @@ class Circuit:
         amounts = network.nodes['gas']['amount']
         np.minimum(amounts, self._network.nodes['gas']['amount'], out=amounts)
         self._network = network
-        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        self._held[:] = [node_pressure(*own) for own in self._all_nodes()]
+        self._bind()
         if self._warmth is not None:
             self._warmth.take(sheet, network)
+
+    def _bind(self) -> None:
+        """Bind the kernels of a tick to the memory, of which the network is another one."""
+        flowing = Flowing(
+            self._network.nodes, self._network.elements, self.state, self._rates, self._work,
+            self._held, self._flows, np.array([self._steps]), np.array([self._step]))
+        self._advance = Bound(advance, flowing)
+        self._fill_nodes = Bound(fill_nodes, Ports(
+            flowing, np.array(self._nodes, np.int64), self._ports))
+        self._show_rows = Bound(show_rows, Shown(
+            flowing, self._none, self._first, self._is_return, self._stored, self._gas, self._oil,
+            self._shown))
 
     def _all_nodes(self) -> list[tuple[float, float, np.record]]:
         """Return content, temperature and record of every node."""
@@ -151,14 +166,8 @@ class Circuit:
 
     def nodes(self) -> list[FedNode]:
         """Return the manifolds that feed actuators at the start of the next tick."""
-        network, n = self._network, len(self._network.nodes)
-        return [FedNode(
-            float(self._held[k]),
-            float(feeding_capacity(self._held[k], self.state[n + k], network.nodes[k])),
-            float(self._rates[k]),
-            float(inflow_slope(k, self.state, self._held, network.elements)),
-            float(inflow_trend(k, self.state, self._rates, self._held, network.nodes,
-                               network.elements))) for k in self._nodes]
+        self._fill_nodes.run()
+        return [FedNode(*own) for own in self._ports.tolist()]
 
     def advance_nodes(
             self, drawn: Sequence[float], paid: Sequence[float],
@@ -169,14 +178,14 @@ class Circuit:
         ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
         the tick. ``returned`` are the volumes given to the return, m3.
         """
-        flows = self._none.copy()
+        flows = self._flows
+        flows[:] = 0.0
         for node, back, volume, given in zip(self._nodes, self._returns, drawn, returned):
             flows[node] += volume / self._step
             flows[back] -= given / self._step
         n = len(self._network.nodes)
         self.state[2 * n:3 * n] = 0.0
-        circuit_advance(self._steps, self._step / self._steps, flows, self._network.nodes,
-                        self._network.elements, self.state, self._work)
+        self._advance.run()
         taken = self._account(drawn, paid, returned)
         self._held[:] = self._work[0, :n]
         if self._warmth is not None and self._warmth.advance(
@@ -217,11 +226,7 @@ class Circuit:
         return total
 
     def _show(self) -> None:
-        network = self._network
-        circuit_rates(self.state, self._none, network.nodes, network.elements, self._work[0],
-                      self._rates)
-        show(self._first, self.state, self._rates, network.nodes, network.elements,
-             self._is_return, self._stored, self._gas, self._oil, self._shown)
+        self._show_rows.run()
         if self._warmth is not None:
             self._warmth.show(self._row_of, self.samples)
 
@@ -271,7 +276,7 @@ class Circuit:
         if self._warmth is not None:
             self._warmth.restore(values[self._heat_at:])
             self._take(self._sheet)
-        self._held = np.array([node_pressure(*own) for own in self._all_nodes()])
+        self._held[:] = [node_pressure(*own) for own in self._all_nodes()]
         saved = list(SUPPLY_STATE.names or ())
         samples = self.samples[saved].copy()
         self._show()
