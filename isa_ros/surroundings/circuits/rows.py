@@ -93,6 +93,7 @@ def _show_way(row, state, nodes, elements, sample):
             stored += 0.5 * elements[j].line.inertance * flow * flow
     for i in range(row.inner, row.inner_last):
         stored += node_energy(state[i], state[n + i], nodes[i])
+        lost -= state[3 * n + i]        # of oil whose compressibility has changed
     if first.law == OF_PUMP:
         sample.pump_energy = -lost
     else:
@@ -114,7 +115,7 @@ def _show_place(row, state, rates, nodes, elements, sample):
     for j in range(row.first, row.last):
         lost += state[PER_NODE * n + m + j]
     if node.is_held <= 0.0 and node.gas.amount <= 0.0:
-        lost -= state[3 * n + i]    # of oil whose compressibility has changed
+        lost -= state[3 * n + i]
     sample.pump_flow = rates[i]
     sample.relief_energy = lost
     sample.stored_energy = stored

@@ -2,14 +2,14 @@
 
 import math
 
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.surroundings.circuits import warmth
-from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.circuit import Circuit, Fed
 from isa_ros.surroundings.circuits.warmth import STEP
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.surroundings.circuits.sheets import circuit_of, sheet_of
+from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of
 from tests.surroundings.circuits.test_circuit import driven, LPM, surplus
 from tests.surroundings.circuits.test_heat import CAPACITY, HOT, HOT_STATION, walther
 
@@ -83,6 +83,11 @@ def test_all_heat_is_stored_or_given_away(text: str) -> None:
     assert unbalanced(circuit, text) == pytest.approx(0.0, abs=1e-9 * float(whole['heat']))
     throughput = abs(float(whole['pump_energy'])) + abs(float(whole['energy']))
     assert abs(surplus(circuit)) < 1e-6 * throughput
+    # the parts have what the whole has lost, what softer oil has given among it
+    tank = circuit._network.node('tank')
+    paid = float(circuit._network.nodes[tank]['p_held'] * circuit.state[tank])
+    assert float(circuit.samples[1:]['relief_energy'].sum()) == pytest.approx(
+        float(whole['relief_energy'] + whole['return_energy']) - paid, abs=1e-9 * throughput)
 
 
 def test_the_heat_is_that_of_losses_shafts_and_actuators() -> None:
@@ -168,6 +173,20 @@ def test_oil_that_is_still_cold_keeps_its_steps() -> None:
     circuit.change(mild)
     assert abs(circuit._steps - steps) <= 1 < steps - circuit_of(
         HOT_STATION.replace('12.0}', '31.0}'), 'left', 'right')._steps
+
+
+def test_a_manifold_must_be_large_enough_for_cold_oil() -> None:
+    """C16 with oil of -30 celsius, 0.685 times as soft: four plant steps are 80 us."""
+    slope, volume = 1e-9, 0.11
+    for coolant, is_refused in ((31.0, False), (-30.0, True)):
+        text = HOT.replace('oil_volume_l: 0.5}', f'oil_volume_l: {volume}}}').replace(
+            'coolant_celsius: 12.0', f'coolant_celsius: {coolant}').replace(
+            'air_celsius: 17.0', 'air_celsius: 31.0')
+        if is_refused:
+            with pytest.raises(ParameterError, match='parts.main: capacity over flow slope'):
+                Circuit(sheet_of(text), MS, [Fed('main', slope)])
+        else:
+            Circuit(sheet_of(text), MS, [Fed('main', slope)])
 
 
 @pytest.mark.parametrize(('place', 'value'), [(0, -61.0), (1, 5001.0), (3, np.inf)])
