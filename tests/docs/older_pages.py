@@ -97,7 +97,8 @@ NOT_RUN = {
                  'tshark -i ecm -w ecat.pcap': ROOT},
     'hysteresis': {'./isa study hysteresis --out docs': MINUTES},
     'impacts': {'python scripts/measure_impacts.py': MINUTES},
-    'installing': {'./isa demo': INSTALLS,
+    'installing': {"pip install '.[mujoco]'": INSTALLS,
+                   './isa demo': INSTALLS,
                    'sudo apt install python3-lz4 python3-zstandard': INSTALLS,
                    'python -m scripts.make_kernels --all': MINUTES},
     'layouts': {"sed 's,/rotor/,/smart_manifold/,g; s,\"rotor,\"smart_manifold,g' "
