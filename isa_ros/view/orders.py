@@ -15,6 +15,8 @@ MOST_TICKS = 10_000
 """Of a step: about as many as take a second."""
 FASTEST = 1000.0
 """Largest speed, times real time."""
+SLOWEST = 0.01
+"""Least speed of a run: between two ticks it takes orders."""
 _LONGEST = 200      # characters of a name
 _LARGEST_ID = 1 << 53
 _LARGEST = sys.float_info.max

@@ -29,7 +29,7 @@ from isa_ros.view.columns import Columns
 from isa_ros.view.controls import Controls
 from isa_ros.view.frames import frame_of, Gathering, PERIOD_S
 from isa_ros.view.hub import Hub
-from isa_ros.view.orders import Answer, Order, PAUSE, RESTART, SEEK, SPEED, STEP, STOP
+from isa_ros.view.orders import Answer, Order, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of
 from isa_ros.view.scene import scene_of
@@ -116,6 +116,9 @@ class LiveRun(RowSink):
             coordinator.step(order.value)
             return f'{order.value} ticks'
         if order.what == SPEED:
+            if 0.0 < order.value < SLOWEST:
+                raise SetpointError(f'speed: value = {order.value:g}, must be >= {SLOWEST:g}, or '
+                                    '0 (as fast as possible)')
             coordinator.set_real_time_factor(order.value)
             return f'{order.value:g} times real time'
         if order.what == RESTART:

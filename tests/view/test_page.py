@@ -98,7 +98,7 @@ def test_a_bag_plays_to_its_end_and_is_stepped_and_sought(browser):
             browser.resize(width, 900)
             browser.wait('return [...document.querySelectorAll(".chart")].every('
                          'own => own.clientWidth < innerWidth)')
-            assert browser.run('return document.documentElement.scrollWidth <= innerWidth')
+            browser.wait('return document.documentElement.scrollWidth <= innerWidth')
         browser.resize(1300, 900)
         assert browser.log() == []
 
@@ -218,7 +218,7 @@ def test_missing_frames_are_a_gap_and_another_begin_forgets(browser):
             frame(12, 2, 5, 6, 7, 8);
             frame(20, 1, 9, 10);
             tell();
-            told.push([store.grid.at(6.9), store.grid.t(3)]);
+            told.push([store.grid.at(6.9), store.grid.at(7), store.grid.t(3)]);
             frame(4, 1, 11, 12);
             tell();
             for (let k = 0; k < 70000; k += 1000) {
@@ -227,8 +227,24 @@ def test_missing_frames_are_a_gap_and_another_begin_forgets(browser):
             told.push([store.n <= 60000, store.ticks[store.n - 1], store.last[0]]);
             return told""")
     assert found == [
-        [[10, 11, 12, 14, 15, 20], [2, 4, 6, 8, None, 10]], [3, 7.0], [[4], [12]],
+        [[10, 11, 12, 14, 15, 20], [2, 4, 6, 8, None, 10]], [3, 3, 7.0], [[4], [12]],
         [True, 70099, 69999]]
+
+
+def test_of_many_values_meanwhile_the_last_is_sent(browser):
+    """One order of a slider at a time."""
+    with played(GOLDEN / 'rotor_step') as url:
+        browser.visit(url)
+        assert browser.run("""
+            const posts = [], open = [];
+            const send = sending(value => new Promise(done => {
+              posts.push(value);
+              open.push(done); }));
+            send(1); send(2); send(3);
+            const before = [...posts];
+            open[0]();
+            return new Promise(done => setTimeout(() => done([before, posts])))""") == [
+                [1], [1, 3]]
 
 
 def test_a_source_is_chosen_and_its_curves_have_their_values(browser):
@@ -262,9 +278,12 @@ def test_a_hostile_bag_runs_no_script(browser, tmp_path):
         browser.wait("return document.getElementById('title').textContent !== ''")
         shown = browser.run('return document.body.innerText')
         assert 'onerror="window.hacked = 2">' in shown
+        browser.run('order(arguments[0])', EVIL)    # is refused with its name
+        browser.wait("return document.getElementById('note').textContent.includes('onerror')")
         assert browser.run('return window.hacked === undefined')
         assert browser.run("return document.querySelectorAll('img').length") == 0
-        assert complaints(browser) == []
+        refused, = complaints(browser)
+        assert '400 (Bad Request)' in refused
 
 
 def test_the_policy_stops_markup_that_got_through(browser):
@@ -384,6 +403,6 @@ def test_every_control_of_a_leg_is_there_and_the_chosen_actuator_has_its_own(bro
         assert browser.run("return document.querySelector('button.stop').textContent") == (
             'emergency stop')
         browser.resize(500, 900)
-        assert browser.run('return document.documentElement.scrollWidth <= innerWidth')
+        browser.wait('return document.documentElement.scrollWidth <= innerWidth')
         browser.resize(1300, 900)
         assert browser.log() == []

@@ -198,6 +198,7 @@ def test_a_restart_begins_another_bag(tmp_path):
     (fault('valve_stuk', True), "ram: fault 'valve_stuk' is unknown; did you mean valve_stuck?"),
     (fault('link_lost', True), "ram: fault 'link_lost' is unknown"),
     (fault('valve_stuck', True, 'pump'), "'pump' is not an actuator or a supply; valid: "),
+    ({'what': 'speed', 'value': 0.009}, 'speed: value = 0.009, must be >= 0.01, or 0 (as fast'),
     ({'what': 'stop', 'value': False}, '')])
 def test_what_is_refused_changes_nothing(tmp_path, order, message):
     """One line with what, value and bound; the bag is that of a run without the order."""
