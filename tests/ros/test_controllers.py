@@ -16,6 +16,7 @@ from isa_ros.simulation import Simulation
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState
+from tests.ros.domains import held_domain
 from tests.ros.in_millimetres import InMillimetres
 from tests.ros.started import bringup, LEG, started, wait_for
 
@@ -29,7 +30,22 @@ def record(bag: Path, *options: str) -> str:
     bag.parent.mkdir()
     with bringup(bag, '--controller', 'sway', *options) as run:
         assert run.exit_code() == 0, run.errors
+    return sha256(bag)
+
+
+def sha256(bag: Path) -> str:
     return hashlib.sha256((bag / 'bag_0.mcap').read_bytes()).hexdigest()
+
+
+@pytest.fixture(scope='module')
+def swayed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the bag of 0.1 s with the controller, all in processes of their own."""
+    directory = tmp_path_factory.mktemp('swayed')
+    bag = directory / 'several' / 'bag'
+    with pytest.MonkeyPatch.context() as patch, held_domain(patch), \
+            started(directory / 'sway.log', SWAY):
+        record(bag, '--duration', '0.1')
+    return bag
 
 
 def setpoints(bag: Path) -> list[tuple[int, float]]:
@@ -43,13 +59,12 @@ def messages_from(bag: Path, t_ns: int) -> list[tuple]:
     return [message for message in Bag(bag).messages() if message.t_ns >= t_ns]
 
 
-def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tmp_path):
+def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(swayed, domain, tmp_path):
     """In processes, in one process, and restored half-way; replay needs no controller."""
-    bags = [tmp_path / name / 'bag' for name in ('several', 'one', 'half', 'rest')]
+    bags = [swayed, *(tmp_path / name / 'bag' for name in ('one', 'half', 'rest'))]
     state = tmp_path / 'state.json'
     with started(tmp_path / 'sway.log', SWAY):
-        several = record(bags[0], '--duration', '0.1')
-        assert record(bags[1], '--duration', '0.1', '--in-process') == several
+        assert record(bags[1], '--duration', '0.1', '--in-process') == sha256(swayed)
         record(bags[2], '--duration', '0.05', '--in-process', '--save', str(state))
         record(bags[3], '--duration', '0.1', '--restore', str(state))
     rest, whole = messages_from(bags[3], 0), messages_from(bags[0], 50_000_000)
@@ -80,13 +95,10 @@ def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, byte
         simulation.step()
 
 
-def test_a_controller_in_memory_gives_the_bytes_of_one_in_the_lockstep(domain, tmp_path):
+def test_a_controller_in_memory_gives_the_bytes_of_one_in_the_lockstep(swayed):
     """Message by message: time, actuators, supply, leg, and what took effect when."""
-    bag = tmp_path / 'run' / 'bag'
-    with started(tmp_path / 'sway.log', SWAY):
-        record(bag, '--duration', '0.1')
     assert [(message.sequence, message.topic, message.data)
-            for message in Bag(bag).messages()] == simulated(100, Sway())
+            for message in Bag(swayed).messages()] == simulated(100, Sway())
 
 
 def test_a_request_beyond_the_range_is_refused_alike_in_processes_and_in_memory(domain, tmp_path):
