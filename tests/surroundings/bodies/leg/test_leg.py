@@ -371,3 +371,24 @@ def test_a_leg_is_released_once():
     own.hold()
     own.ports(ports)
     assert held == [True, True, False, False] and own.is_held
+
+
+def test_a_restored_leg_is_released_no_second_time():
+    """One that was released before it was saved; one that was held is released at its time."""
+    def own() -> Leg:
+        return Leg(SHEET, POSE, MS, release_ns=2 * MS)
+
+    def held(leg: Leg, ticks: int) -> list[bool]:
+        found = []
+        for _ in range(ticks):
+            leg.ports(np.zeros(3, LOAD_PORT))
+            found.append(leg.is_held)
+            leg.advance(np.zeros(3, LOAD_REPLY))
+        return found
+    first, second, third = own(), own(), own()
+    held(first, 1)
+    second.restore(first.snapshot())
+    assert held(second, 2) == [True, False]
+    third.restore(second.snapshot())
+    third.hold()
+    assert held(third, 2) == [True, True]
