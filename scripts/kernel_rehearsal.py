@@ -106,12 +106,12 @@ def _run(name: str) -> None:
 
 @contextmanager
 def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
-    """Note the entries that are asked for; bound kernels do nothing, but for loops of them."""
+    """Note the entries that are asked for; bound kernels of ticks do nothing."""
     found: dict[str, Entry] = {}
 
     def address_of(entry: Entry) -> int:
         found[entry.symbol] = entry
-        return objects.address(entry) if entry.kernel is run_rounds else _ADDRESS
+        return objects.address(entry) if _runs(entry) else _ADDRESS
 
     def call_of(entry: Entry) -> Callable[[tuple[Any, ...]], Any]:
         found[entry.symbol] = entry
@@ -124,6 +124,11 @@ def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
             yield found
     finally:
         kernel.entry_address.cache_clear()  # of what does nothing
+
+
+def _runs(entry: Entry) -> bool:
+    """Return whether a bound kernel runs: a loop of others, or of controllers, with setpoints."""
+    return entry.kernel is run_rounds or entry.kernel.__module__.startswith('isa_ros.examples.')
 
 
 def _wanted(entry: Entry) -> Wanted:

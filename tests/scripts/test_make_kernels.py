@@ -88,9 +88,8 @@ def test_a_leg_asks_for_all_that_its_run_needs(objects):
 
 @pytest.mark.slow
 def test_controllers_of_scenarios_ask_for_their_kernels(objects):
-    """The trot swings its feet after half a second."""
     names = {wanted.name for wanted in rehearsed('quadruped.yaml', objects)}
-    assert {'update_legs', 'share_wrench', 'limit_forces', 'swing_feet'} <= names
+    assert {'update_legs', 'share', 'swing'} <= names
 
 
 def test_objects_of_an_entry(alone, objects):

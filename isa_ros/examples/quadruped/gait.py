@@ -6,6 +6,8 @@ the ground it swings to the foothold, by a polynomial of fifth order, and up and
 parabola, so that speed and acceleration are 0 at both ends of the swing.
 """
 
+from typing import NamedTuple
+
 from isa_ros.core.kernel import kernel
 from isa_ros.examples.quadruped.parameters import TrotGains
 import numpy as np
@@ -56,6 +58,33 @@ def swing_feet(trunk, progress, seconds, holds, gains, feet, velocities, lifted,
             forces[i, a] = (
                 stiffness * (place[a] - trunk[a] - feet[i, a])
                 + damping * (speed[a] - trunk[3 + a] - velocities[i, a]))
+
+
+class Swinging(NamedTuple):
+    """Memory of `swing`; as `swing_feet` has it."""
+
+    trunk: np.ndarray
+    progress: np.ndarray
+    seconds: np.ndarray
+    """(1,)."""
+    holds: np.ndarray
+    gains: np.ndarray
+    """(4,)."""
+    feet: np.ndarray
+    velocities: np.ndarray
+    lifted: np.ndarray
+    ways: np.ndarray
+    forces: np.ndarray
+
+
+@kernel
+def swing(own):
+    """Fill the forces of swinging feet; return 0."""
+    gains = own.gains
+    swing_feet(own.trunk, own.progress, own.seconds[0], own.holds,
+               (gains[0], gains[1], gains[2], gains[3]), own.feet, own.velocities, own.lifted,
+               own.ways, own.forces)
+    return 0
 
 
 class Gait:

@@ -7,7 +7,9 @@ legs are left to the feedback.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
+from isa_ros.core.bound import Bound
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
@@ -99,15 +101,58 @@ def place_feet(speeds, turning, paths, points, frames, origins, feet, velocities
                 velocities[k, a] += jacobians[k, a, m] * speeds[i - 1]
 
 
+class Tree(NamedTuple):
+    """Of n links and f legs: joint i - 1 moves link i, `paths_of`, feet in their last links."""
+
+    parents: np.ndarray
+    rotations: np.ndarray
+    places: np.ndarray
+    masses: np.ndarray
+    coms: np.ndarray
+    paths: np.ndarray
+    points: np.ndarray
+
+
+class Motion(NamedTuple):
+    """Rotation of the root, (3, 3), its angular velocity, (3,), and all joints, (n - 1,)."""
+
+    root: np.ndarray
+    turning: np.ndarray
+    angles: np.ndarray
+    speeds: np.ndarray
+
+
+class Updated(NamedTuple):
+    """What `Legs.update` fills; meaning as there."""
+
+    frames: np.ndarray
+    origins: np.ndarray
+    com: np.ndarray
+    holding: np.ndarray
+    feet: np.ndarray
+    velocities: np.ndarray
+    jacobians: np.ndarray
+
+
+class Updating(NamedTuple):
+    """Memory of `update_legs`."""
+
+    motion: Motion
+    tree: Tree
+    out: Updated
+
+
 @kernel
-def update_legs(root, turning, angles, speeds, tree, legs, out):
-    """Fill all of ``out`` of `Legs`."""
-    parents, rotations, places, masses, coms = tree
-    paths, points = legs
-    frames, origins, com, holding, feet, velocities, jacobians = out
-    place_links(root, angles, parents, rotations, places, frames, origins)
-    weigh_links(parents, masses, coms, frames, origins, com, holding)
-    place_feet(speeds, turning, paths, points, frames, origins, feet, velocities, jacobians)
+def update_legs(own):
+    """Fill all of ``own.out``; return 0."""
+    motion, tree, out = own.motion, own.tree, own.out
+    place_links(motion.root, motion.angles, tree.parents, tree.rotations, tree.places, out.frames,
+                out.origins)
+    weigh_links(tree.parents, tree.masses, tree.coms, out.frames, out.origins, out.com,
+                out.holding)
+    place_feet(motion.speeds, motion.turning, tree.paths, tree.points, out.frames, out.origins,
+               out.feet, out.velocities, out.jacobians)
+    return 0
 
 
 def paths_of(sheet: RobotSheet) -> NDArray[np.int64]:
@@ -156,18 +201,20 @@ class Legs:
         """Links of each leg from the trunk to the foot, (f, 3); joint i - 1 moves link i."""
         n, f = len(links), len(self.paths)
         self.mass = sheet.mass
-        self._tree = (
+        tree = Tree(
             np.array([link.parent for link in links], np.int64),
             np.array([link.joint.rotation for link in links]),
             np.array([link.joint.place for link in links]),
-            np.array([link.mass for link in links]), np.array([link.com for link in links]))
-        self._legs = self.paths, np.array([foot.point for foot in self.feet_of])
+            np.array([link.mass for link in links]), np.array([link.com for link in links]),
+            self.paths, np.array([foot.point for foot in self.feet_of]))
         self.com, self.holding = np.zeros(3), np.zeros(n - 1)
         self.feet, self.velocities = np.zeros((f, 3)), np.zeros((f, 3))
         self.jacobians = np.zeros((f, 3, JOINTS))
         self._frames, self.origins = np.zeros((n, 3, 3)), np.zeros((n, 3))
-        self._out = (self._frames, self.origins, self.com, self.holding, self.feet,
-                     self.velocities, self.jacobians)
+        self._motion = Motion(np.zeros((3, 3)), np.zeros(3), np.zeros(n - 1), np.zeros(n - 1))
+        self._update = Bound(update_legs, Updating(self._motion, tree, Updated(
+            self._frames, self.origins, self.com, self.holding, self.feet, self.velocities,
+            self.jacobians)))
 
     def update(self, root: np.ndarray, turning: np.ndarray, angles: np.ndarray,
                speeds: np.ndarray) -> None:
@@ -178,7 +225,9 @@ class Legs:
         ``origins`` of the links, (n, 3), ``com`` and ``holding`` are those of now, until the next
         call.
         """
-        update_legs(root, turning, angles, speeds, self._tree, self._legs, self._out)
+        for own, given in zip(self._motion, (root, turning, angles, speeds)):
+            own[:] = given
+        self._update.run()
 
     def torques(self, forces: np.ndarray) -> np.ndarray:
         """Return J^T f of forces on the feet, N, (f, 3): of each leg's joints, (3 f,), Nm."""

@@ -89,3 +89,34 @@ def limit_forces(is_standing, least, most, friction, forces):
         if sideways > friction * normal:
             forces[i, 0] *= friction * normal / sideways
             forces[i, 1] *= friction * normal / sideways
+
+
+class Sharing(NamedTuple):
+    """Memory of `share`."""
+
+    wrench: np.ndarray
+    """Of the ground, about the centre of mass, (6,)."""
+    arms: np.ndarray
+    """Of the feet, (f, 3)."""
+    is_standing: np.ndarray
+    """(f,)."""
+    weights: np.ndarray
+    """`WEIGHTS`."""
+    limits: np.ndarray
+    """Least and most force, N, and friction, (3,)."""
+    equations: Equations
+    forces: np.ndarray
+    """Of the feet on the ground, (f, 3)."""
+
+
+@kernel
+def share(own):
+    """Fill the forces that feet which stand exert on the ground, within their limits; return 0."""
+    forces = own.forces
+    share_wrench(own.wrench, own.arms, own.is_standing, own.weights, REGULARISATION,
+                 own.equations, forces)
+    limit_forces(own.is_standing, own.limits[0], own.limits[1], own.limits[2], forces)
+    for i in range(len(forces)):
+        for c in range(3):
+            forces[i, c] = -forces[i, c]
+    return 0

@@ -27,15 +27,15 @@ from isa_ros.actuator.setpoint_range import setpoint_bounds
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.controller import Controller, Setpoints, State
+from isa_ros.core.bound import Bound
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
 from isa_ros.errors import ConfigError
-from isa_ros.examples.quadruped.gait import Gait, swing_feet
+from isa_ros.examples.quadruped.gait import Gait, swing, Swinging
 from isa_ros.examples.quadruped.legs import Legs, paths_of
 from isa_ros.examples.quadruped.parameters import (
     gains_of, PROGRAM, Program, program_of, TrotGains)
-from isa_ros.examples.quadruped.stance import (
-    equations, limit_forces, REGULARISATION, share_wrench, WEIGHTS)
+from isa_ros.examples.quadruped.stance import equations, share, Sharing, WEIGHTS
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
 import numpy as np
 
@@ -65,8 +65,6 @@ class Trot(Controller):
         self._names = [names[drive] for drive in self._drives]
         self._least, self._most = np.array([efforts[drive] for drive in self._drives]).T
         self._joints = self._legs.paths.ravel() - 1
-        self._swing_gains = (
-            gains.lift, gains.press, gains.swing_stiffness, gains.swing_damping)
         self.start(self._names)
 
     @classmethod
@@ -105,13 +103,27 @@ class Trot(Controller):
         n = len(self._legs.paths)
         self._lifted = np.zeros((n, 3))
         self._forces = np.zeros((n, 3))
-        self._equations, self._ways = equations(n), np.zeros((3, 3))
+        self._bind(n)
         self._home = np.zeros((n, 2))
         self._anchor = np.zeros(2)
         self._heading = np.array([1.0, 0.0])
         self._drag = np.zeros(2)
         self._inertia = np.eye(3)
         self._columns: np.ndarray | None = None
+
+    def _bind(self, n: int) -> None:
+        """Bind the kernels of a tick with n feet to their memory."""
+        gains, legs = self._gains, self._legs
+        self._sharing = Sharing(
+            np.zeros(6), np.zeros((n, 3)), np.ones(n, bool), WEIGHTS,
+            np.array([gains.least_force, gains.most_force, gains.friction]), equations(n),
+            self._forces)
+        self._swinging = Swinging(
+            np.zeros(6), np.zeros(n), np.array([self._gait.swing_s]), np.zeros((n, 2)),
+            np.array([gains.lift, gains.press, gains.swing_stiffness, gains.swing_damping]),
+            legs.feet, legs.velocities, self._lifted, np.zeros((3, 3)), self._forces)
+        self._share_forces = Bound(share, self._sharing)
+        self._swing_feet = Bound(swing, self._swinging)
 
     def step(self, state: State) -> Setpoints:
         """Return the efforts of all actuators of the robot."""
@@ -176,7 +188,7 @@ class Trot(Controller):
         of_com = velocity + cross(turning, com)
         ahead = level(self._heading)
         error = ahead @ wanted[1:3] - of_com[:2]
-        wrench = np.empty(6)
+        wrench = self._sharing.wrench
         wrench[:2] = gains.speed_gain * error
         if gait.is_stepping:
             self._drag += gains.speed_integral * seconds * (error @ ahead)
@@ -192,11 +204,9 @@ class Trot(Controller):
         turning_error[2] -= turn_rate
         wrench[3:] = root @ (self._inertia @ (root.T @ (
             -gains.tilt_stiffness * tilt - gains.tilt_damping * turning_error)))
-        share_wrench(wrench, legs.feet - com, gait.is_standing, WEIGHTS, REGULARISATION,
-                     self._equations, self._forces)
-        limit_forces(
-            gait.is_standing, gains.least_force, gains.most_force, gains.friction, self._forces)
-        np.negative(self._forces, out=self._forces)
+        np.subtract(legs.feet, com, out=self._sharing.arms)
+        self._sharing.is_standing[:] = gait.is_standing
+        self._share_forces.run()
 
     def _swing(self, own: np.ndarray, root: np.ndarray, wanted: np.ndarray,
                was_standing: np.ndarray) -> None:
@@ -211,11 +221,11 @@ class Trot(Controller):
         wanted_speed = level(self._heading) @ wanted[1:3]
         offset = (0.5 * gait.stand_s * wanted_speed + gains.capture * math.sqrt(
             wanted[0] / STANDARD_GRAVITY) * (speed - wanted_speed))
-        holds = place + offset + self._home @ level(_heading(root)).T
-        swing_feet(
-            np.concatenate([own[:3], own[7:10]]), gait.progress, gait.swing_s, holds,
-            self._swing_gains, legs.feet, legs.velocities, self._lifted, self._ways,
-            self._forces)
+        swinging = self._swinging
+        swinging.holds[:] = place + offset + self._home @ level(_heading(root)).T
+        swinging.trunk[:3], swinging.trunk[3:] = own[:3], own[7:10]
+        swinging.progress[:] = gait.progress
+        self._swing_feet.run()
 
     def snapshot(self) -> bytes:
         """Return the whole state."""
@@ -231,7 +241,7 @@ class Trot(Controller):
         self._gait.restore(numbers[:2])
         rest = np.array(numbers[2:])
         self._heading, self._anchor, self._drag = rest[:6].reshape(3, 2).copy()
-        self._lifted = rest[6:6 + 3 * n].reshape(n, 3).copy()
+        self._lifted[:] = rest[6:6 + 3 * n].reshape(n, 3)
         self._home = rest[6 + 3 * n:6 + 5 * n].reshape(n, 2).copy()
         self._inertia = rest[6 + 5 * n:].reshape(3, 3).copy()
 

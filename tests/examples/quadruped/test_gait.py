@@ -1,7 +1,8 @@
 """Phases of the feet, and their way through the air."""
 
+from isa_ros.core.bound import Bound
 from isa_ros.core.parameter import defaults
-from isa_ros.examples.quadruped.gait import Gait, swing_feet, swing_way
+from isa_ros.examples.quadruped.gait import Gait, swing, swing_feet, swing_way, Swinging
 from isa_ros.examples.quadruped.parameters import TrotGains
 import numpy as np
 import pytest
@@ -93,6 +94,11 @@ def test_a_swinging_foot_is_pulled_to_its_way_and_a_standing_one_is_not():
     wanted = (1500.0 * (place - trunk[:3] - feet[1])
               + 60.0 * (speed - trunk[3:] - velocities[1]))
     assert forces[1] == pytest.approx(wanted, rel=1e-12, abs=0.0)
+    own = Swinging(trunk, np.array([0.0, 0.6]), np.array([0.26]), holds,
+                   np.array([0.08, 0.004, 1500.0, 60.0]), feet, velocities, lifted,
+                   np.zeros((3, 3)), np.full((2, 3), 7.0))
+    assert Bound(swing, own).run() == 0
+    assert own.forces.tobytes() == forces.tobytes()
 
 
 def test_a_state_is_restored():

@@ -1,7 +1,8 @@
 """Sharing of a wrench among the feet that stand."""
 
+from isa_ros.core.bound import Bound
 from isa_ros.examples.quadruped.stance import (
-    equations, limit_forces, REGULARISATION, share_wrench, WEIGHTS)
+    equations, limit_forces, REGULARISATION, share, share_wrench, Sharing, WEIGHTS)
 import numpy as np
 import pytest
 
@@ -63,3 +64,14 @@ def test_forces_stay_in_the_friction_cone_and_press():
     limit_forces(standing, 10.0, 1500.0, 0.6, forces)
     assert forces == pytest.approx(np.array([
         [60.0, 0.0, 100.0], [3.0, 4.0, 10.0], [0.0, -900.0, 1500.0], [7.0, 8.0, -9.0]]), abs=1e-9)
+
+
+def test_the_forces_of_a_tick_are_those_on_the_ground_within_their_limits():
+    own = Sharing(WRENCH.copy(), ARMS.copy(), DIAGONAL.copy(), WEIGHTS,
+                  np.array([10.0, 500.0, 0.02]), equations(4), np.full((4, 3), 7.0))
+    expected = shared(DIAGONAL)
+    free = expected.copy()
+    limit_forces(DIAGONAL, 10.0, 500.0, 0.02, expected)
+    assert Bound(share, own).run() == 0
+    assert own.forces.tobytes() == (-expected).tobytes()
+    assert abs(free[0, 2] - expected[0, 2]) > 1.0 and own.forces[0, 2] == -500.0
