@@ -10,6 +10,7 @@ from tests.plant.records import digests, REFUSED, STORED
 EXPECTED = json.loads(STORED.read_text(encoding='utf-8'))
 
 
+@pytest.mark.slow
 def test_every_record_is_the_stored_one() -> None:
     """`python -m tests.plant.records` after a wanted change of a record or of a value."""
     found = digests()

@@ -9,6 +9,7 @@ from tests.ros.started import bringup, is_alive, RIG, started, wait_for
 pytestmark = pytest.mark.ros
 
 
+@pytest.mark.slow
 def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_path):
     """A signal then ends the actuators."""
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG)) as actuators:
@@ -24,6 +25,7 @@ def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_p
         tmp_path / 'second' / 'second_0.mcap').read_bytes()
 
 
+@pytest.mark.slow
 def test_both_hosts_need_the_same_values(domain, tmp_path):
     value = ('--set', 'actuators.rotor.parameters.reu.force.kp=2e-5')
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG), *value):

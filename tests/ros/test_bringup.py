@@ -47,6 +47,7 @@ supplies:
 """
 
 
+@pytest.mark.slow
 def test_several_supplies_give_equal_files_and_replay(domain, tmp_path):
     """Each actuator is told the pressures of its own supply, wherever it runs."""
     config = tmp_path / 'leg.yaml'

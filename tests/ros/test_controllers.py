@@ -59,6 +59,7 @@ def messages_from(bag: Path, t_ns: int) -> list[tuple]:
     return [message for message in Bag(bag).messages() if message.t_ns >= t_ns]
 
 
+@pytest.mark.slow
 def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(swayed, domain, tmp_path):
     """In processes, in one process, and restored half-way; replay needs no controller."""
     bags = [swayed, *(tmp_path / name / 'bag' for name in ('one', 'half', 'rest'))]
@@ -143,6 +144,7 @@ def test_a_killed_controller_ends_the_run_naming_it(domain, tmp_path):
     assert replay(Bag(bag)).is_equal
 
 
+@pytest.mark.slow
 def test_a_controller_that_follows_the_clock_replays_exactly(domain, tmp_path):
     """Its setpoints take effect at the tick of their arrival, and are recorded with it."""
     bag = tmp_path / 'bag'
@@ -155,6 +157,7 @@ def test_a_controller_that_follows_the_clock_replays_exactly(domain, tmp_path):
     assert replay(Bag(bag)).is_equal
 
 
+@pytest.mark.slow
 def test_a_class_in_the_run_file_needs_no_node(domain, tmp_path):
     """In processes, in one and in Python: the same bytes."""
     bags = [tmp_path / name / 'bag' for name in ('several', 'one', 'python')]

@@ -40,6 +40,7 @@ def test_ticks_too_long_for_the_ground_are_reported_before_the_wait(domain, tmp_
     assert 'no answer before tick 0' in lines[-1] and warned < len(lines) - 1
 
 
+@pytest.mark.slow
 def test_participants_may_be_started_by_hand_and_used_again(domain, tmp_path):
     """After one run a participant begins the next at t = 0: both bags are equal."""
     bags = [tmp_path / name / 'bag' for name in ('first', 'second')]
@@ -66,6 +67,7 @@ def test_other_parameters_are_refused(domain, tmp_path):
     assert not (tmp_path / 'bag').exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('in_process', [False, True])
 def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path, in_process):
     first_bag = tmp_path / 'first'
@@ -81,6 +83,7 @@ def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path, i
         assert first.exit_code() == 130
 
 
+@pytest.mark.slow
 def test_two_nodes_of_one_name_are_refused(domain, tmp_path, observer):
     """
     The coordinator cannot decide which of the two is the actuator.

@@ -51,6 +51,7 @@ class User:
         return self.call(SetParameters, 'set_parameters', request).results[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('options', [(), ('--in-process',)], ids=['processes', 'one process'])
 def test_a_paused_run_goes_exactly_as_far_as_it_is_told(observer, tmp_path, options):
     """Steps from t = 0, a state saved and a reset on the way; both bags replay."""

@@ -62,6 +62,7 @@ def copy(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_copy_with_other_words_compiles_nothing(compiled_kernels: None, copy: Path) -> None:
     """
     Nor does a second start: a version of numba that cannot load what it kept shows here.
