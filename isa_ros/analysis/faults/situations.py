@@ -122,13 +122,17 @@ def _seen(fault: NamedFault, situation: str, rig: Rig, sound: Signals) -> Seen:
         faulty = recorded(rig, (rig.tree(fault, BEGIN_S),), DURATION_S)
     except SimulationDiverged as error:
         return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
-    condition, kind, after_s = _first(faulty, sound)
+    condition, kind, after_s = first_alarm(faulty, sound)
     position_error, force_error = (largest_error(faulty, sound, own) for own in EXACT)
     return Seen(fault.name, situation, condition, kind, after_s, position_error, force_error)
 
 
-def _first(faulty: Signals, sound: Signals) -> tuple[str, str, float]:
-    """Return the condition noticed first, of the same tick the trip, and when."""
+def first_alarm(faulty: Signals, sound: Signals) -> tuple[str, str, float]:
+    """
+    Return the condition noticed first, ``warning`` or ``trip``, and after how many seconds.
+
+    Of the same tick the trip; two empty texts and 0 if none is, or only in the sound run too.
+    """
     found = []
     for field, kind in BIT_SETS.items():
         new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)

@@ -1,8 +1,11 @@
 """Which fault is noticed in which situation, and what it costs where none is."""
 
-from isa_ros.analysis.faults.situations import as_text, as_tree, SITUATIONS, situations, write_page
+from isa_ros.analysis.faults.situations import (
+    as_text, as_tree, first_alarm, SITUATIONS, situations, write_page)
 from isa_ros.cli.main import main
+from isa_ros.core.conditions import BITS
 from isa_ros.errors import ConfigError
+import numpy as np
 import pytest
 
 
@@ -39,12 +42,26 @@ def test_errors_are_those_of_the_piston(found):
     assert found['encoder_stuck', 'slow'].position_error > 0.045
 
 
+@pytest.mark.parametrize(('warns_at', 'first'), [
+    (520, ('overspeed', 'trip', 20e-3)), (519, ('overload', 'warning', 19e-3))])
+def test_the_first_alarm_counts_and_of_one_tick_the_trip(warns_at, first):
+    """The sound run has a warning of its own all the time, which is none of the fault."""
+    sound = {'warnings': np.full(600, float(1 << BITS['relief_open'])), 'trips': np.zeros(600)}
+    faulty = {name: values.copy() for name, values in sound.items()}
+    faulty['warnings'][warns_at:] += 1 << BITS['overload']
+    faulty['trips'][520:] += 1 << BITS['overspeed']
+    name, kind, after_s = first_alarm(faulty, sound)
+    assert (name, kind, pytest.approx(after_s, abs=1e-9)) == first
+
+
 def test_the_matrix_has_a_row_a_fault_and_a_column_a_situation(found, tmp_path):
     head, *rows = as_text(list(found.values())).splitlines()
     assert all(name in head for name in SITUATIONS) and len(rows) == 3
     assert len(as_tree(list(found.values()))['situations']) == 12
     page, = write_page(list(found.values()), tmp_path)
     assert 'trip sensor_range, 3 ms' in page.read_text()
+    own = found['encoder_stuck', 'slow']
+    assert f'; {own.position_error * 1e3:.3g} mm, {own.force_error:.0f} N |' in page.read_text()
 
 
 def test_an_unknown_fault_and_options_that_do_not_fit_are_refused(capsys):
