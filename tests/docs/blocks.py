@@ -14,57 +14,14 @@ from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
 import io
 import os
 from pathlib import Path
-import re
 import signal
 import subprocess
 import sys
-import textwrap
-from typing import NamedTuple
+
+from scripts.page_blocks import Block, blocks_of, first_line, is_part, own_file
 
 ROOT = Path(__file__).parents[2]
 TIMEOUT_S = 300.0
-_BLOCK = re.compile(r'^```(\w+)\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-_FILE = re.compile(r'(?:# |/\* |<!-- )(\w+\.\w+)(?: \*/| -->)?\n')
-_INDENTED = re.compile(r'(?<=\n\n)((?: {4,}.*\n)+)')
-_COMMANDS = (
-    'isa', 'python', 'ros2', 'pip', 'sudo', 'source', 'export', 'git', 'unshare', 'nsenter',
-    'modprobe', 'ss', 'sed', 'tshark', 'smart_manifold', '.venv/bin/python')
-_NAME = re.compile(r'name: (\w+)\n')
-
-
-class Block(NamedTuple):
-    """A fenced block of a page."""
-
-    kind: str
-    text: str
-    line: int
-    """Of its first line in the page."""
-
-
-def blocks_of(page: str) -> list[Block]:
-    """Return the fenced blocks of a page and its indented commands, in order."""
-    fenced = [Block(found[1], found[2], page[:found.start(2)].count('\n') + 1)
-              for found in _BLOCK.finditer(page)]
-    between = _BLOCK.sub(lambda found: '\n' * found[0].count('\n'), page)
-    indented = [
-        Block('command', textwrap.dedent(found[1]), between[:found.start()].count('\n') + 1)
-        for found in _INDENTED.finditer(between) if _is_command(found[1].strip())]
-    return sorted([*fenced, *indented], key=lambda block: block.line)
-
-
-def _is_command(text: str) -> bool:
-    first = text.removeprefix('$ ').removeprefix('./').split()[0]
-    return first in _COMMANDS
-
-
-def first_line(block: Block) -> str:
-    """Return the line by which a block is named, without its comment."""
-    return re.split(r'\s+#', block.text.partition('\n')[0])[0].strip()
-
-
-def is_part(block: Block) -> bool:
-    """Claim that a block is a part of a file, which cannot be used alone."""
-    return block.kind in ('yaml', 'xml', 'cmake') and not _own_file(block)
 
 
 def run(page: str, folder: Path, left_out: Collection[str] = (), has_parts: bool = False) -> int:
@@ -99,7 +56,7 @@ def run(page: str, folder: Path, left_out: Collection[str] = (), has_parts: bool
 
 def _result(block: Block, folder: Path, names: dict[str, object]) -> str | None:
     """Return what a block prints; None: it is a file."""
-    if name := _own_file(block):
+    if name := own_file(block):
         (folder / name).write_text(block.text)
         return None
     if block.kind in ('bash', 'command'):
@@ -108,14 +65,6 @@ def _result(block: Block, folder: Path, names: dict[str, object]) -> str | None:
     with _within(folder), contextlib.redirect_stdout(io.StringIO()) as out:
         exec(compile(block.text, f'line {block.line} of the page', 'exec'), names)
     return out.getvalue()
-
-
-def _own_file(block: Block) -> str | None:
-    """Return the name of the file that a block is."""
-    if own := _FILE.match(block.text):
-        return own[1]
-    own = _NAME.match(block.text) if block.kind == 'yaml' else None
-    return f'{own[1]}.yaml' if own else None
 
 
 def environment(folder: Path) -> dict[str, str]:

@@ -95,11 +95,13 @@ NOT_RUN = {
                  'isa replay runs/leg_sensor_lost': ROOT, "pip install -e '.[canopen]'": INSTALLS,
                  'isa bus serial rig_linear --path /tmp/ram': ENDLESS,
                  'tshark -i ecm -w ecat.pcap': ROOT},
+    'first_tasks': {'python -m scripts.first_tasks DIR --write': MINUTES},
     'hysteresis': {'./isa study hysteresis --out docs': MINUTES},
     'impacts': {'python scripts/measure_impacts.py': MINUTES},
     'installing': {"pip install '.[mujoco]'": INSTALLS,
                    './isa demo': INSTALLS,
                    'sudo apt install python3-lz4 python3-zstandard': INSTALLS,
+                   "pip install '.[mujoco]'": INSTALLS,
                    'python -m scripts.make_kernels --all': MINUTES},
     'layouts': {"sed 's,/rotor/,/smart_manifold/,g; s,\"rotor,\"smart_manifold,g' "
                 'rig_rotary.pj3.xml > smart_manifold.pj3.xml': 'needs an installed package',

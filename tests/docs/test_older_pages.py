@@ -5,11 +5,14 @@ from contextlib import contextmanager, ExitStack, suppress
 import os
 from pathlib import Path
 import re
+import shlex
 import signal
 import subprocess
 
+from isa_ros.cli.main import make_parser
 import pytest
-from tests.docs.blocks import blocks_of, environment, first_line, is_part, run
+from scripts.page_blocks import blocks_of, first_line, is_part
+from tests.docs.blocks import environment, run
 from tests.docs.older_pages import BEFORE, NOT_RUN
 from tests.docs.test_pages_run import PAGES
 from tests.ros.domains import held_domain
@@ -72,6 +75,32 @@ def test_every_block_is_run_or_listed_with_its_reason(page: str) -> None:
     assert all(listed.values())
     if page not in PAGES and page not in BEFORE and page not in OTHER_TESTS:
         assert set(names) == set(listed)
+
+
+_COMMAND = re.compile(r'(?:^|[\s(])(?:\./)?isa (?!test\b)([a-z].*)')
+_END = re.compile(r"\s(?:\|\|?|&&?|[12]?>|#)(?:\s|&|$)|[);]|'$")
+
+
+def commands_of(page: str) -> Iterator[list[str]]:
+    """Yield the words of each command `isa` in a page's blocks, run or not."""
+    for block in blocks_of(text_of(page)):
+        if block.kind in ('bash', 'command'):
+            for line in re.split(r'\n| && ', block.text.replace('\\\n', ' ')):
+                if found := _COMMAND.search(line):
+                    yield shlex.split(_END.split(found[1])[0])
+
+
+@pytest.mark.parametrize('page', sorted(path.stem for path in DOCS.glob('*.md')))
+def test_every_command_has_options_that_there_are(page: str) -> None:
+    """Also of those that are not run."""
+    for words in commands_of(page):
+        assert make_parser().parse_args(words).command, words
+
+
+def test_there_are_many_commands_and_a_wrong_option_is_noticed() -> None:
+    assert sum(len(list(commands_of(path.stem))) for path in DOCS.glob('*.md')) > 120
+    with pytest.raises(SystemExit):
+        make_parser().parse_args(['bringup', 'leg', '--scenari', 'drop', '--durations', '1'])
 
 
 def test_the_lists_name_pages() -> None:

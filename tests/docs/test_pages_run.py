@@ -5,8 +5,9 @@ from pathlib import Path
 
 from matplotlib.testing.compare import compare_images
 import pytest
+from scripts.page_blocks import blocks_of
 from tests.docs import blocks
-from tests.docs.blocks import blocks_of, run
+from tests.docs.blocks import run
 from tests.docs.older_pages import NOT_RUN
 from tests.fieldbus.canopen.test_masters import refusal
 from tests.ros.domains import held_domain
