@@ -34,6 +34,8 @@ ALONE = 'actuators alone'
 """The rehearsal of every model without a run."""
 _TICKS = 4
 _CONTROLLED_S = 1.0     # until a controller of the scenarios has called all of its kernels
+_NEEDED = ('isa_ros.examples.', 'isa_ros.surroundings.circuits.')
+"""Modules of controllers and circuits, whose numbers would be refused if they were zeros."""
 _LARGEST = 65536    # bytes of a message of the wire, of which no kind depends
 
 _NOTHING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)(lambda table: 0)
@@ -127,8 +129,8 @@ def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
 
 
 def _runs(entry: Entry) -> bool:
-    """Return whether a bound kernel runs: a loop of others, or of controllers, with setpoints."""
-    return entry.kernel is run_rounds or entry.kernel.__module__.startswith('isa_ros.examples.')
+    """Return whether a bound kernel runs: a loop of others, or one whose numbers Python needs."""
+    return entry.kernel is run_rounds or entry.kernel.__module__.startswith(_NEEDED)
 
 
 def _wanted(entry: Entry) -> Wanted:

@@ -92,6 +92,13 @@ def test_controllers_of_scenarios_ask_for_their_kernels(objects):
     assert {'update_legs', 'share', 'swing'} <= names
 
 
+@pytest.mark.slow
+def test_circuits_ask_for_their_kernels(objects):
+    """They run, as zeros would be refused."""
+    names = {wanted.name for wanted in rehearsed('crane_circuit.yaml', objects)}
+    assert {'advance', 'fill_nodes', 'show_rows'} <= names
+
+
 def test_objects_of_an_entry(alone, objects):
     wanted = alone['oil_stiffness']
     assert in_lowering(make, wanted, objects) == {}
