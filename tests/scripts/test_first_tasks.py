@@ -7,6 +7,7 @@ import pytest
 from scripts import first_tasks
 from scripts.first_tasks import Done, followed, main, ROOT, rows, steps_of, write
 from scripts.first_tasks_list import Task, TASKS
+from tests.ros.domains import held_domain
 
 PAGE = """# A page
 
@@ -92,9 +93,12 @@ def test_the_table_has_what_was_seen_or_why_not(
 @pytest.mark.slow
 @pytest.mark.ros
 def test_some_of_them_are_followed_in_a_clone(
-        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str]) -> None:
     """With the environment of this test; `./isa` would make one."""
-    code = main([str(tmp_path), '--only', '3', '8', '11', '--environment', first_tasks.sys.prefix])
+    with held_domain(monkeypatch):
+        code = main([
+            str(tmp_path), '--only', '3', '8', '11', '--environment', first_tasks.sys.prefix])
     printed = capsys.readouterr()
     assert code == 0, printed.out
     assert printed.err == '3: done\n8: done\n11: done\n'
