@@ -9,7 +9,7 @@ from isa_ros.reu.bumpless import EVERY_BLOCK
 from isa_ros.reu.device import device_step
 from isa_ros.reu.protection import BLOCK, DISABLE, NONE
 import pytest
-from tests.reu.test_device import constants, find, PERIOD, request, starting
+from tests.reu.devices import constants, find, PERIOD, request, starting
 
 OPENING = 0.03
 NEVER = 10_000

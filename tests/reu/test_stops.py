@@ -5,8 +5,8 @@ import math
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, PRESSURE, SPOOL
 from isa_ros.reu import stops
 import pytest
+from tests.reu.devices import constants
 from tests.reu.states import enabled_state
-from tests.reu.test_device import constants
 
 REU = constants()
 RULES = REU.rules

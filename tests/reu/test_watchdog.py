@@ -5,8 +5,8 @@ from isa_ros.core.device import ENABLED, FAULT
 from isa_ros.reu.protection import note_trip
 from isa_ros.reu.watchdog import stand_still
 import pytest
+from tests.reu.devices import constants, PERIOD
 from tests.reu.states import enabled_state
-from tests.reu.test_device import constants, PERIOD
 
 CONVERSION = PERIOD * 20e-6     # s
 FIVE_MS = round(5e-3 / CONVERSION)
