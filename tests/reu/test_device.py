@@ -12,6 +12,7 @@ from tests.reu.devices import (
 from tests.reu.states import enabled_state
 from tests.sheets import MODELS
 
+
 class Expected:
     """The device in plain words, written without its table."""
 
