@@ -61,7 +61,8 @@ def called(package: Path, program: str = MAIN, **environment: str) -> tuple[str,
             if name not in ('NUMBA_CACHE_DIR', 'XDG_CACHE_HOME', 'HOME')}
     done = subprocess.run(
         [sys.executable, '-B', '-c', program],   # two edits may fall into one second of a .pyc
-        env=kept | {'PYTHONPATH': str(package)} | environment, cwd=package, capture_output=True, text=True, timeout=120.0)
+        env=kept | {'PYTHONPATH': str(package)} | environment, cwd=package,
+        capture_output=True, text=True, timeout=120.0)
     assert done.returncode == 0, done.stderr
     return done.stdout, done.stderr
 

@@ -136,7 +136,8 @@ def test_a_saved_result_is_the_bag_of_the_run(drop, tmp_path):
     ({'leave_out': ['/knee/valve']},
      r"leg.yaml: record.leave_out = '/knee/valve' matches no topic; valid: /clock, "),
     ({'leave_out': ['/kfe/*']}, 'leaves out /kfe/applied_parameters, which a replay needs'),
-    ({'decimate': {'/coordinator/events': 5}}, 'decimates /coordinator/events, of which a replay')])
+    ({'decimate': {'/coordinator/events': 5}},
+     'decimates /coordinator/events, of which a replay')])
 def test_a_result_whose_bag_would_lack_something_is_not_saved(drop, tmp_path, record, message):
     """As `isa bringup` refuses it: it was saved, and the pattern had no effect."""
     with pytest.raises(ConfigError, match=message):
