@@ -50,3 +50,11 @@ def test_one_of_a_run_loads_that_too(module, expected):
 def test_what_forked_actuators_need_is_loaded_before():
     modules = loaded(LOADING.format('coordinator.runs'))
     assert {f'isa_ros.nodes.actuator.{name}' for name in ('in_lockstep', 'of_run')} <= modules
+
+
+def test_the_public_name_of_nodes_is_loaded_where_it_is_used():
+    from isa_ros import nodes
+    from isa_ros.nodes.participant import Participant
+    assert nodes.Participant is Participant
+    with pytest.raises(AttributeError, match="'isa_ros.nodes' has no attribute 'Participants'"):
+        nodes.Participants
