@@ -63,6 +63,8 @@ def test_it_follows_one_ode_by_scipy(
                       atol=[1e-14, 1e-12, 1e-9, 1e-6]).y[:, -1]
         circuit.advance_nodes([drawn * 1e-3], [float(x[3])], [0.5 * drawn * 1e-3])
         assert circuit.samples[0]['oil_temperature'] == pytest.approx(x[2], abs=bound)
+        own = circuit._warmth
+        assert own is not None and abs(own.oil.celsius - own.oil.taken) <= step
     assert x[2] > 33.0
     expected = x[0] * 1.2e9 / (1.0 + 4.5e-3 * (x[2] - 40.0)) / 0.5e-3
     assert circuit.pressures[0][0] == pytest.approx(expected, rel=1e-4)
@@ -189,7 +191,7 @@ def test_a_manifold_must_be_large_enough_for_cold_oil() -> None:
             Circuit(sheet_of(text), MS, [Fed('main', slope)])
 
 
-@pytest.mark.parametrize(('place', 'value'), [(0, -61.0), (1, 5001.0), (3, np.inf)])
+@pytest.mark.parametrize(('place', 'value'), [(0, -61.0), (1, -61.0), (1, 5001.0), (3, np.inf)])
 def test_a_saved_state_of_no_oil_is_refused(place: int, value: float) -> None:
     """Temperatures that no equation holds at, and what is not finite."""
     circuit = circuit_of(HOT_STATION, 'left', 'right')
