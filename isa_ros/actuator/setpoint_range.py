@@ -33,6 +33,8 @@ LIMIT = 'limit'
 BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
 REPORT_NS = NS_PER_SECOND
+REQUEST, REFUSED = "a controller's request, ", 'refused: '
+"""Beginnings of the lines about requests beyond their range."""
 """Simulated time between two reports of requests to one actuator."""
 NUMBERS = {
     FORCE: ('effort',), POSITION: ('position', 'velocity'),
@@ -257,9 +259,9 @@ class RequestRange:
             try:
                 text = own.admit(requests[row])
             except SetpointError as error:
-                text = f'refused: {error}'
+                text = f'{REFUSED}{error}'
                 requests[row] = np.zeros((), COMMAND)
             if text and t_ns >= self._next_report[row]:
                 self._next_report[row] = t_ns + REPORT_NS
-                lines.append(f"t = {t_ns / NS_PER_SECOND:g} s: a controller's request, {text}")
+                lines.append(f'{REQUEST}{text}')
         return tuple(lines)

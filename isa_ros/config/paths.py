@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 import sys
 
+from isa_ros.core.suggest import near_names
 from isa_ros.errors import ConfigError
 
 _SHARE = Path('share') / 'isa_ros'
@@ -79,4 +80,6 @@ def find(name: str, directory: str) -> Path:
     for known in (name, f'{name}.yaml'):
         if known in files:
             return files[known]
-    raise ConfigError(f'{name}: no such file; shipped: {", ".join(files) or "none"}')
+    near = near_names(name, [*files, *(known.removesuffix('.yaml') for known in files)])
+    raise ConfigError(f'{name}: no such file; ' + (
+        f'did you mean {near}?' if near else f'shipped: {", ".join(files) or "none"}'))

@@ -20,12 +20,17 @@ def alternatives(name: str, names: Iterable[str]) -> str:
             if known == stem:
                 return f'the key is {known}, in SI'
             return f'the key is {known} (the unit belongs to the key)'
-    near = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
+    near = near_names(name, names)
     if near:
-        return f'did you mean {" or ".join(near)}?'
+        return f'did you mean {near}?'
     if not names:
         return 'no names are defined here'
     return f'valid: {listed(names)}'
+
+
+def near_names(name: str, names: Iterable[str]) -> str:
+    """Return the valid names closest to an unknown one, joined by "or"; '' if none is close."""
+    return ' or '.join(difflib.get_close_matches(name, list(names), n=3, cutoff=0.6))
 
 
 def listed(names: Sequence[str]) -> str:

@@ -8,6 +8,7 @@ behind a link a bag has what has arrived.
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from isa_ros.actuator.setpoint_range import REFUSED as REFUSED_REQUEST, REQUEST
 from isa_ros.actuator.tunable import changing
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.changeable import Changeable, changeables
@@ -57,6 +58,8 @@ class History(NamedTuple):
     """Those of the supplies, by sample and SUPPLY.KEY."""
     cushions: 'Mapping[int, Trapped]' = {}
     """Of the actuators with cushions, by row."""
+    events: Mapping[int, Sequence[str]] = {}
+    """Texts of the run's own events, by the tick before which they happened."""
 
 
 class Trapped(NamedTuple):
@@ -75,7 +78,7 @@ def trips_in(run: RunConfig, history: History) -> list[Trip]:
 
 def events_in(run: RunConfig, history: History) -> list[Event]:
     """Return what happened after the first sample, in the order of time."""
-    found = [*_changes(run, history)]
+    found = [*_changes(run, history), *_of_requests(history, run.step_ns)]
     found += (Event(own.t_s, own.actuator, TRIP, own.what) for own in trips_in(run, history))
     if len(history.ticks):
         for row, actuator in enumerate(run.actuators):
@@ -85,6 +88,18 @@ def events_in(run: RunConfig, history: History) -> list[Event]:
     for row, trapped in history.cushions.items():
         found += _of_cushion(run.actuators[row], trapped, run.step_ns)
     return sorted(found, key=lambda own: round(own.t_s * NS_PER_SECOND))
+
+
+def _of_requests(history: History, step_ns: int) -> Iterator[Event]:
+    """Yield the requests of controllers that were refused or limited."""
+    for tick, texts in history.events.items():
+        for text in texts:
+            if text.startswith(REQUEST):
+                what = text.removeprefix(REQUEST)
+                name, _, said = what.removeprefix(REFUSED_REQUEST).partition(': ')
+                yield Event(tick * step_ns / NS_PER_SECOND, name,
+                            REFUSED if what.startswith(REFUSED_REQUEST) else WARNING,
+                            f'{REQUEST}{said}')
 
 
 def _of_device(name: str, samples: Records) -> Iterator[Event]:

@@ -15,7 +15,7 @@ from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.run.diagnostics import ENERGY
 from isa_ros.run.events import History, Trapped
-from msg_adapters import device, diagnostics
+from msg_adapters import device, diagnostics, event
 from msg_adapters.actuator_messages import APPLIED_PARAMETERS, CUSHION_PRESSURE, DEVICE
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
@@ -56,7 +56,8 @@ def history_of(bag: Bag, run: RunConfig) -> History:
     rows: list[np.ndarray] = []
     ticks: list[int] = []
     read = {*topics.devices, *topics.parameters, *topics.cushions, diagnostics.TOPIC[0],
-            OF_SUPPLIES[0]}
+            OF_SUPPLIES[0], event.TOPIC[0]}
+    events: dict[int, list[str]] = {}
     for message in bag.messages(read):
         try:
             is_new = _read(message, topics, names, now)
@@ -69,6 +70,8 @@ def history_of(bag: Bag, run: RunConfig) -> History:
                     pressure_in(message.data) - ATMOSPHERE)
             elif message.topic == OF_SUPPLIES[0]:
                 supplies[message.sequence] = tuned_values(message.data, NODE)
+            elif message.topic == event.TOPIC[0]:
+                events.setdefault(message.sequence, []).append(event.text(message.data))
         except (CdrError, KeyError, SetpointError, ValueError) as error:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
         if not is_new:
@@ -80,7 +83,8 @@ def history_of(bag: Bag, run: RunConfig) -> History:
             rows.append(now.copy())
     return History(
         ticks, np.array(rows, SAMPLE).reshape(-1, len(names)), tuned, supplies,
-        {row: Trapped(list(own), np.array(list(own.values()))) for row, own in trapped.items()})
+        {row: Trapped(list(own), np.array(list(own.values()))) for row, own in trapped.items()},
+        events)
 
 
 def _read(message: BagMessage, topics: _Topics, names: list[str], now: np.ndarray) -> bool:

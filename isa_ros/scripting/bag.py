@@ -61,5 +61,7 @@ class ResultMessages:
                     into[:] = by_tick[tick]
             rows.tuned = log.tuned.get(tick, {})
             rows.tuned_supplies = log.tuned_supplies.get(tick, {})
+            for text in log.events.get(tick, ()):
+                output.add_event(tick, text)
             output.take(tick, rows)
         output.end()

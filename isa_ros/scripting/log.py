@@ -35,6 +35,8 @@ class Log(NamedTuple):
     """Changed parameters by sample, row and name, for the samples with any."""
     tuned_supplies: Mapping[int, Mapping[str, float]] = {}
     """Those of the supplies, by sample and SUPPLY.KEY."""
+    events: Mapping[int, Sequence[str]] = {}
+    """Texts of the run's events by sample: refused requests of controllers."""
 
 
 class _Kept(NamedTuple):
@@ -98,6 +100,7 @@ class LogSink(RowSink):
         self._sent: dict[int, Records] = {}
         self._tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
         self._tuned_supplies: dict[int, Mapping[str, float]] = {}
+        self._events: dict[int, list[str]] = {}
         self._kinds, self._sent_kinds = rows.applied['kinds'], rows.sent['kinds']
         self._n_ticks, self._report, self._taken = n_ticks, report, 0
 
@@ -109,7 +112,7 @@ class LogSink(RowSink):
             self._samples.rows[:n], self._supplies.rows[:n],
             {name: column.rows[:n] for name, column in self._bodies.items()}, self._applied,
             None if self._observed is None else self._observed.rows[:n], self._sent, self._tuned,
-            self._tuned_supplies)
+            self._tuned_supplies, self._events)
 
     def take(self, tick: int, rows: Rows) -> None:
         """Copy the rows before ``tick``, which begins the run or follows the last one."""
@@ -139,6 +142,10 @@ class LogSink(RowSink):
     def end_quiet(self, tick: int, n_ticks: int) -> None:
         """Count the samples."""
         self._taken = tick + n_ticks + 1
+
+    def add_event(self, tick: int, text: str) -> None:
+        """Keep an event before ``tick``."""
+        self._events.setdefault(tick, []).append(text)
 
     def end(self) -> None:
         """Report the end."""

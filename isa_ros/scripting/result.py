@@ -151,7 +151,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
                 cushions[row] = Trapped(there.tolist(), trapped[there])
         return events_in(run, History(
             self._with_device.tolist(), log.samples[self._with_device], log.tuned,
-            log.tuned_supplies, cushions))
+            log.tuned_supplies, cushions, log.events))
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from isa_ros.actuator.setpoint_range import RequestRange
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.requests import merge_requests
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
@@ -186,7 +187,8 @@ class TickLoop:
         rows.take_requests()
         if self._request_range is not None:
             for line in self._request_range.admit(self.t_ns, rows.commands):
-                self._warn(line)
+                self._warn(f't = {self.t_ns / NS_PER_SECOND:g} s: {line}')
+                self.add_event(line)
         if given is None:
             self.source.commands(tick, rows.commands)
         else:

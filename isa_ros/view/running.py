@@ -114,7 +114,7 @@ class LiveRun(RowSink):
         if order.what == STEP:
             coordinator.pause(True)
             coordinator.step(order.value)
-            return f'{order.value} ticks'
+            return f'{order.value} tick{"s" * (order.value > 1)}'
         if order.what == SPEED:
             if 0.0 < order.value < SLOWEST:
                 raise SetpointError(f'speed: value = {order.value:g}, must be >= {SLOWEST:g}, or '

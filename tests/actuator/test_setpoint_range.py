@@ -136,8 +136,8 @@ def test_a_request_beyond_the_range_is_deleted_as_a_whole():
     rows[0] = setpoint(position=1.0)
     hip = rows[0].tobytes()
     line, = request_range().admit(12_000_000, rows)
-    assert line.startswith("t = 0.012 s: a controller's request, refused: knee: setpoint position "
-                           '= 50 m, must be 0 to 0.1 m, the stroke; ')
+    assert line.startswith("a controller's request, refused: knee: setpoint position = 50 m, must "
+                           'be 0 to 0.1 m, the stroke; ')
     assert rows[1].tobytes() == bytes(COMMAND.itemsize) and rows[0].tobytes() == hip
 
 

@@ -25,8 +25,15 @@ def test_a_file_of_the_user_comes_first(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_an_unknown_file_is_answered_with_the_shipped_ones() -> None:
     with pytest.raises(
-            ConfigError, match='legs.yaml: no such file; shipped: cooled_station.yaml, .*hyq_leg'):
-        paths.find('legs.yaml', paths.CONFIG)
+            ConfigError, match='zzz: no such file; shipped: cooled_station.yaml, .*hyq_leg'):
+        paths.find('zzz', paths.CONFIG)
+
+
+@pytest.mark.parametrize(('name', 'nearest'), [('legs.yaml', 'leg.yaml'), ('cranne', 'crane')])
+def test_a_file_with_a_slip_is_answered_with_the_nearest(name: str, nearest: str) -> None:
+    with pytest.raises(
+            ConfigError, match=f'^{name}: no such file; did you mean {nearest}( or .*)?[?]$'):
+        paths.find(name, paths.CONFIG)
 
 
 def test_an_installed_share_directory_is_found(

@@ -13,6 +13,7 @@ from isa_ros.replay.replay import replay
 from isa_ros.run.output import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
+from msg_adapters import event
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState
@@ -115,9 +116,12 @@ def test_a_request_beyond_the_range_is_refused_alike_in_processes_and_in_memory(
         'to 0.1 m, the stroke; the key beyond_range: limit of the actuator limits it instead')
     assert [tick for tick, _ in setpoints(bag)] == [k for k in range(1, 50) if k % 10 != 1]
     assert replay(Bag(bag)).is_equal
+    told = [message for message in Bag(bag).messages() if message.topic == event.TOPIC[0]]
+    assert [(own.sequence, event.text(own.data)) for own in told] == [
+        (1, line[line.index("a controller's"):])]
     with pytest.warns(UserWarning, match='hfe: setpoint position = 38 m'):
-        assert [(message.sequence, message.topic, message.data)
-                for message in Bag(bag).messages()] == simulated(50, InMillimetres())
+        assert [(message.sequence, message.topic, message.data) for message in Bag(bag).messages()
+                if message.topic != event.TOPIC[0]] == simulated(50, InMillimetres())
 
 
 def test_a_controller_that_is_not_there_is_named(domain, tmp_path):

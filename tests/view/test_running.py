@@ -153,7 +153,7 @@ def test_pause_step_and_speed(tmp_path):
         7: [{'what': 'step', 'value': 1}, {'what': 'speed', 'value': 500.0}],
         8: [{'what': 'seek', 'value': 0.0}, {'what': 'pause', 'value': False}]}, is_paused=True)
     assert [(own['text'], own['tick'], own['is_done']) for own in lived.answers] == [
-        ('7 ticks', 0, True), ('1 ticks', 7, True), ('500 times real time', 8, True),
+        ('7 ticks', 0, True), ('1 tick', 7, True), ('500 times real time', 8, True),
         ('seek: a run goes forward only', 8, False), ('runs', 8, True)]
     assert lived.frames[0]['is_paused'] and not lived.frames[-1]['is_paused']
     assert {own['speed'] for own in lived.frames} == {0.0, 500.0}

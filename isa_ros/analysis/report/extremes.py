@@ -39,7 +39,7 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
             continue
         ground = signals[f'{leg.name}.foot_force'][:, 2]
         values.append((
-            f'{leg.prefix}ground force', float(ground.min()), float(ground.max()), 'N'))
+            f'{leg.prefix}ground force upwards', float(ground.min()), float(ground.max()), 'N'))
     return values
 
 

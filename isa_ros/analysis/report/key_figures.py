@@ -20,7 +20,7 @@ END = 0.1       # of the time, in which what has settled is looked at for ripple
 TOUCHES = 1.0   # N: a smaller force of the ground is no contact
 HEADER = ('', 'from', 'to', '', 'speed, 1/s', 'peak force', '', 'pressure, MPa',
           'position error', 'force error', 'settled, s', 'ripple', 'oil, l')
-LANDING_HEADER = ('contact', 'landing, s', 'peak, N', 'at, s', 'in contact')
+LANDING_HEADER = ('contact', 'landing, s', 'peak in its direction, N', 'at, s', 'in contact')
 LEGEND = (
     'speed and peak: greatest magnitudes; pressure: gauge; error: of reference and measurement, '
     'rms and at most, where a loop has both; settled: within 2 % of the motion; ripple: half of '

@@ -15,7 +15,7 @@ def outcome(signals: Signals) -> str:
     lines = aligned([_HEADER, *(_row(signals, own) for own in signals.run.actuators)], 'lrrlrlrrr')
     for leg in signals.run.legs:
         ground = signals[f'{leg.name}.foot_force'][:, 2]
-        lines.append(f'{leg.prefix}ground: at most {digits(float(ground.max()), 3)} N, '
+        lines.append(f'{leg.prefix}ground: at most {digits(float(ground.max()), 3)} N upwards, '
                      f't = {float(signals.time[int(ground.argmax())]):.3f} s')
     lines.append('settled: within 2 % of the motion; pressure: gauge; oil: drawn from the supply')
     return '\n'.join(lines)

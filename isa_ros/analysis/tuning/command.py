@@ -105,9 +105,9 @@ def _missed(bench: Rig, wanted: Wanted, found: Tuned, has_file: bool) -> str:
     measured = worst.measured
     phase, band = measured.margins.phase, measured.bandwidth
     reached = 'hunting' if hunting else (
-        f'{"no margin" if phase is None else f"{phase:.1f} deg"} and '
-        f'{"no bandwidth" if band is None else f"{band:.1f} Hz"}')
-    return (f'not reached: {wanted.phase_margin:g} deg and {wanted.bandwidth:g} Hz; best '
+        f'{"no margin" if phase is None else f"{phase:.2f} deg"} and '
+        f'{"no bandwidth" if band is None else f"{band:.2f} Hz"}')
+    return (f'not reached: {wanted.phase_margin:g} deg and {wanted.bandwidth:g} Hz; farthest '
             f'{reached} at {worst.rig.config.initial_position / place.scale:.4g} {place.symbol}'
             + ('; no file is written' if has_file else ''))
 

@@ -16,6 +16,7 @@ OPTIONAL = {
     'canopen': ('canopen', 'isa bus canopen'), 'python-can': ('canopen', 'isa bus canopen'),
     'msgpack': ('canopen', 'CAN over UDP'),
     'mujoco': ('mujoco', 'MuJoCo as the body of a run'),
+    'pysoem': ('ethercat', 'the example of an EtherCAT master'),
     'pin': ('pinocchio', 'the example with Pinocchio')}
 """Distribution -> extra of setup.py, and what it is for."""
 

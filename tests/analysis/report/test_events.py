@@ -4,6 +4,8 @@ import isa_ros
 from isa_ros.analysis.report.events import event_rows, events_text, MOST, recorded_events
 from isa_ros.analysis.report.report import recorded, write_report
 from isa_ros.bag.reader import Bag
+from isa_ros.controller import Controller, Setpoint
+from isa_ros.replay.replay import replay
 from isa_ros.run.events import Event
 from isa_ros.scripting.run import load
 from isa_ros.tick.trips import TripWarning
@@ -91,3 +93,28 @@ def test_a_run_without_events_says_so(tmp_path):
 def test_a_table_of_very_many_events_is_cut():
     rows = event_rows([Event(0.1, 'ram', 'trip', 'overload')] * (MOST + 3))
     assert len(rows) == MOST + 2 and rows[-1][-1] == 'and 3 more'
+
+
+class OutOfReach(Controller):
+    """Asks one actuator for too much force at each tick, another for a place outside, twice."""
+
+    def step(self, state):
+        asked = {'kfe': Setpoint(position=0.05, effort=1e5)}
+        if state.t_ns in (30_000_000, 31_000_000):
+            asked['hfe'] = Setpoint(position=7.0)
+        return asked
+
+
+def test_requests_of_a_controller_that_are_refused_or_limited_are_told(tmp_path):
+    """Once a second for each actuator; in memory, in the bag, and in what is read of it."""
+    run = load('leg').replace({'actuators.kfe.beyond_range': 'limit'})
+    with pytest.warns(UserWarning):
+        result = run.simulate(0.04, [OutOfReach()])
+    found = [own for own in result.events if own.what.startswith("a controller's request")]
+    assert [(own.t_s, own.source, own.kind) for own in found] == [
+        (0.001, 'kfe', 'warning'), (0.031, 'hfe', 'refused')]
+    assert found[0].what.endswith('setpoint effort = 100000 N, limited to 7500 N, the rated force')
+    assert found[1].what.startswith("a controller's request, setpoint position = 7 m, must be 0 to")
+    bag = result.save(tmp_path / 'bag')
+    assert isa_ros.read(bag).events == result.events
+    assert replay(Bag(bag)).is_equal

@@ -77,7 +77,7 @@ def test_what_cannot_be_reached_is_one_line_with_what_can(tmp_path: Path, capsys
     assert cli.main(['tune', 'isa_v5', '--bandwidth', '150', '--strokes', '50',
                      '--out', str(out)]) == 1
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last.startswith('not reached: 60 deg and 150 Hz; best ')
+    assert last.startswith('not reached: 60 deg and 150 Hz; farthest ')
     assert last.endswith(' Hz at 50 mm; no file is written') and not out.exists()
 
 
