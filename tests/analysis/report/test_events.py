@@ -114,7 +114,7 @@ def test_requests_of_a_controller_that_are_refused_or_limited_are_told(tmp_path)
     assert [(own.t_s, own.source, own.kind) for own in found] == [
         (0.001, 'kfe', 'warning'), (0.031, 'hfe', 'refused')]
     assert found[0].what.endswith('setpoint effort = 100000 N, limited to 7500 N, the rated force')
-    assert found[1].what.startswith("a controller's request, setpoint position = 7 m, must be 0 to")
+    assert found[1].what.startswith("a controller's request, setpoint position = 7 m, must be 0")
     bag = result.save(tmp_path / 'bag')
     assert isa_ros.read(bag).events == result.events
     assert replay(Bag(bag)).is_equal

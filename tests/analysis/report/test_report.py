@@ -59,7 +59,8 @@ def test_extremes_are_those_of_the_signals():
     assert 17.0 < values['rotor force'][1] < 17.0 * 1.5
 
 
-@pytest.mark.parametrize('topic', ['references', 'valve', 'joint_states', 'pressure_a', 'load_cell'])
+@pytest.mark.parametrize(
+    'topic', ['references', 'valve', 'joint_states', 'pressure_a', 'load_cell'])
 def test_what_was_not_recorded_is_left_out(tmp_path, topic):
     """The rest is drawn; docs show a filter without references."""
     isa_ros.load('rig_linear', changes={'record': {'leave_out': [f'/*/{topic}']}}).simulate(
