@@ -17,6 +17,8 @@ FASTEST = 1000.0
 """Largest speed, times real time."""
 SLOWEST = 0.01
 """Least speed of a run: between two ticks it takes orders."""
+LATEST = 1e9
+"""Largest time of a bag that is sought, s: thirty years."""
 _LONGEST = 200      # characters of a name
 _LARGEST_ID = 1 << 53
 _LARGEST = sys.float_info.max
@@ -27,7 +29,7 @@ _VALUES: Mapping[str, type | None] = {
     PAUSE: bool, STEP: int, SPEED: float, SEEK: float, RESTART: None, SETPOINT: float,
     TUNE: float, FAULT: bool, REQUEST: None, STOP: bool}
 """Type of the value by order."""
-_BOUNDS = {STEP: (1, MOST_TICKS), SPEED: (0.0, FASTEST), SEEK: (0.0, math.inf)}
+_BOUNDS = {STEP: (1, MOST_TICKS), SPEED: (0.0, FASTEST), SEEK: (0.0, LATEST)}
 
 
 class Order(NamedTuple):
@@ -99,7 +101,7 @@ def _value(order: Order) -> Any:
         is_number = isinstance(value, int if kind is int else (int, float)) and not isinstance(
             value, bool)
         if is_number and low <= value <= high and abs(value) <= _LARGEST:
-            return kind(value)
+            return kind(value) + kind(0)    # no -0
         bound = f'a {"whole " if kind is int else ""}number'
         if order.what in _BOUNDS:
             bound += f' from {low:g} to {high:g}'

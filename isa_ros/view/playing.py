@@ -122,8 +122,8 @@ class Player:
             text = 'paused' if order.value else 'plays'
         elif order.what == STEP:
             self._is_paused = True
-            self._due = float(min(self._tick + order.value, self._last))
-            text = f'{order.value} ticks'
+            self._due = float(min(max(self._tick, int(self._due)) + order.value, self._last))
+            text = f'{order.value} tick{"s" * (order.value > 1)}'
         elif order.what == SPEED:
             self._speed = order.value
             text = f'{order.value:g} times real time'

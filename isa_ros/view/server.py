@@ -11,7 +11,8 @@ from contextlib import contextmanager
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from threading import Thread
+import re
+from threading import BoundedSemaphore, Thread
 from typing import Any
 
 from isa_ros.analysis import report
@@ -39,6 +40,8 @@ _HEADERS = {
 _PATIENCE_S = 10.0      # for a request, and for a page that takes no frames
 _FAREWELL_S = 2.0       # for the last frames
 _JSON = 'application/json'
+_LENGTH = re.compile('[0-9]{1,9}')
+_MOST_CONNECTIONS = 64
 
 
 class ViewServer(ThreadingHTTPServer):
@@ -54,6 +57,7 @@ class ViewServer(ThreadingHTTPServer):
 
     daemon_threads = True
     allow_reuse_address = True
+    request_queue_size = _MOST_CONNECTIONS
 
     def __init__(self, hub: Hub, port: int) -> None:
         try:
@@ -62,11 +66,30 @@ class ViewServer(ThreadingHTTPServer):
             reason = error.strerror if isinstance(error, OSError) else error
             raise ConfigError(f'--port {port}: cannot listen at {HOST}: {reason}') from error
         self.hub = hub
+        self._room = BoundedSemaphore(_MOST_CONNECTIONS)
         self.access = Access(self.server_port)
         drawn_by = uplot()
         self.vendored = {
             'uplot.js': (f'/*! uPlot\n{drawn_by.licence}*/\n{drawn_by.script}', _SCRIPT),
             'uplot.css': (drawn_by.style, _STYLE)}
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in a thread, or end it at once if there are too many."""
+        if not self._room.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except BaseException:
+            self._room.release()
+            raise
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve a connection."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._room.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Print nothing: a browser may end its connections at any time."""
@@ -109,7 +132,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._reply(HTTPStatus.NOT_FOUND)
             return
         length = self.headers.get('Content-Length', '')
-        if not (length.isascii() and length.isdigit() and 0 < int(length) <= MOST_BYTES):
+        if not (_LENGTH.fullmatch(length) and 0 < int(length) <= MOST_BYTES):
             self._reply(HTTPStatus.BAD_REQUEST, f'an order has 1 to {MOST_BYTES} bytes'.encode())
             return
         if self.headers.get_content_type() != _JSON:

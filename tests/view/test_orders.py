@@ -17,6 +17,7 @@ def test_an_order_has_its_value_in_its_type():
     speed = read(what='speed', value=2)
     assert speed.value == 2.0 and isinstance(speed.value, float)
     assert read(what='speed', value=FASTEST).value == FASTEST
+    assert str(read(what='speed', value=-0.0).value) == '0.0'
     assert read(what='restart', value='ignored').value is None
     assert read(what='setpoint', of='kfe', name='position', value=-0.03) == Order(
         'setpoint', 'kfe', 'position', -0.03)
@@ -34,6 +35,8 @@ def test_an_order_has_its_value_in_its_type():
     ({'what': 'step', 'value': 10001}, 'step: value = 10001, must be'),
     ({'what': 'speed', 'value': -0.1}, 'speed: value = -0.1, must be a number from 0 to 1000'),
     ({'what': 'speed', 'value': 1001}, 'speed: value = 1001, must be a number from 0 to 1000'),
+    ({'what': 'seek', 'value': 2e9},
+     'seek: value = 2000000000.0, must be a number from 0 to 1e+09'),
     ({'what': 'seek', 'value': 'now'}, "seek: value = 'now', must be a number"),
     ({'what': 'tune', 'value': False}, 'tune: value = False, must be a number'),
     ({'what': 'tune', 'value': 1, 'of': 3}, 'tune: of = 3, must be a text'),

@@ -30,9 +30,10 @@ def played(bag=BAG):
     player.hub.opened()
     page = json.loads(player.hub.page)
 
-    def after(seconds, **order):
-        if order:
-            player.hub.orders.put(order_of(json.dumps(order).encode()))
+    def after(seconds, *orders, **order):
+        for own in (*orders, order):
+            if own:
+                player.hub.orders.put(order_of(json.dumps(own).encode()))
         clock.t += seconds
         frame = json.loads(player.frame()[6:])
         frame['rows'] = np.frombuffer(base64.b64decode(frame['y']), '<f4').reshape(
@@ -71,9 +72,11 @@ def test_speed_pause_step_and_seek():
     assert (step['first'], step['n'], step['tick']) == (21, 3, 23)
     assert step['answers'] == [{'number': 9, 'is_done': True, 'text': '3 ticks', 'tick': 20}]
     assert after(0.1)['n'] == 0
+    assert after(0.1, {'what': 'step', 'value': 1}, what='step', value=1)['tick'] == 25
     seek = after(0.1, what='seek', value=0.05)
     assert (seek['first'], seek['n'], seek['tick']) == (50, 1, 50)
     assert after(0.1, what='seek', value=7.0)['tick'] == 80
+    assert after(0.1, what='seek', value=1e9)['tick'] == 80
     back = after(0.0, what='pause', value=False)    # from the end: from the start
     assert (back['first'], back['is_paused']) == (0, False)
 

@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 import http.client
 import json
+import select
 import socket
 import threading
+import time
 
 from isa_ros.errors import ConfigError
 from isa_ros.view.hub import Hub, MOST_VIEWERS
@@ -99,7 +101,8 @@ def test_an_order_of_the_page_is_taken(client):
     ({'Origin': None}, 403), ({'Content_Type': 'text/plain'}, 400), ({'Content_Type': None}, 400),
     ({'Content_Length': '0'}, 400), ({'Content_Length': None}, 400),
     ({'Content_Length': '4097'}, 400), ({'Content_Length': '-1'}, 400),
-    ({'Content_Length': '1_0'}, 400), ({'Content_Length': '\u0663'.encode()}, 400)])
+    ({'Content_Length': '1' * 5000}, 400), ({'Content_Length': '1_0'}, 400),
+    ({'Content_Length': '\u0663'.encode()}, 400)])
 def test_an_order_of_another_page_or_without_its_form_is_refused(client, headers, status):
     if 'Content_Type' in headers or 'Content_Length' in headers:
         headers = {name.replace('_', '-'): value for name, value in headers.items()}
@@ -175,3 +178,29 @@ def test_a_port_that_is_taken_is_refused_in_one_line():
 
 def test_what_a_page_gets_first_is_json(client):
     assert json.loads(client.ask('page.json').read()) == {'title': '</script>'}
+
+
+def test_connections_are_so_many_and_no_more(client):
+    """Each costs a thread and a descriptor of the run before its token is read."""
+    address = (client.host.partition(':')[0], int(client.host.partition(':')[2]))
+    silent = [socket.create_connection(address, _TIMEOUT) for _ in range(70)]
+    try:
+        assert wait_until(lambda: len(select.select(silent, [], [], 0.0)[0]) == 70 - 64)
+        assert len(select.select(silent, [], [], 0.0)[0]) == 70 - 64    # ended by the server
+    finally:
+        for one in silent:
+            one.close()
+    assert wait_until(lambda: client.order()[0] == 204)
+
+
+def wait_until(is_done) -> bool:
+    """Return whether something came true within the time of a request."""
+    end = time.monotonic() + _TIMEOUT
+    while time.monotonic() < end:
+        try:
+            if is_done():
+                return True
+        except OSError:
+            pass
+        time.sleep(0.02)
+    return False

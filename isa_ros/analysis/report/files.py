@@ -30,6 +30,8 @@ def refuse_foreign(page: Path, names: list[str]) -> None:
     """
     if page.is_dir():
         raise BagError(f'{page}: is a directory, must be the name of the page')
+    if page.exists() and not page.is_file():
+        raise BagError(f'{page}: is no file, must be the name of the page')
     if page.exists() and GENERATOR.encode() not in _head(page):
         raise BagError(f'{page} already exists and is not a report, so it is not overwritten')
     for name in names:

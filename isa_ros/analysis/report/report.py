@@ -57,7 +57,7 @@ def recorded(path: Path) -> Recorded:
 
     """
     bag = Bag(path)
-    signals = read_signals(bag, needs_values=False)
+    signals = read_signals(bag, needs_values=False).possible()
     history = history_of(bag, signals.run)
     events = events_in(signals.run, history)
     end_s = float(signals.time[-1])

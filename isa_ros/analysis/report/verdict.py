@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from isa_ros.analysis.report.key_figures import settling_time
 from isa_ros.analysis.report.limits import reached_limits
-from isa_ros.analysis.signals.signals import Signals
+from isa_ros.analysis.signals.signals import LARGEST, Signals
+from isa_ros.core.suggest import listed
 from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
 import numpy as np
 
@@ -32,6 +33,9 @@ def verdict(signals: Signals, events: Sequence[Event], ending: str) -> list[Stat
              Statement(GOOD, f'The run came to its end, t = {end:.3f} s.')]
     if not any(own.kind == TRIP for own in events):
         found.append(Statement(GOOD, 'Nothing tripped.'))
+    if signals.impossible:
+        found.append(Statement(BAD, f'Not shown: samples beyond {LARGEST:g} of '
+                                    f'{listed(signals.impossible)}.'))
     for kind, (word, grade) in _KINDS.items():
         found += _told(word, grade, [own for own in events if own.kind == kind])
     if signals.problem:

@@ -4,7 +4,7 @@ The signals of a run by name, whether it was simulated in memory or is read from
 Names, units and gauge pressures are those of `isa_ros.scripting.result.Result`: rotor.force.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,6 +47,8 @@ _SUPPLY = {'pressure': 'fluid_pressure', 'return_pressure': 'fluid_pressure',
            'gas_temperature': 'temperature', 'oil_temperature': 'temperature'}
 """Field of the message by field of a `SUPPLY_SAMPLE`."""
 _CLOCK = '/clock'
+LARGEST = 1e30
+"""Greatest magnitude of a sample that a report shows, SI; a model has diverged long before."""
 
 
 class Signal(NamedTuple):
@@ -66,8 +68,10 @@ class Signals(Mapping[str, Values]):
 
     def __init__(
             self, run: RunConfig, signals: Mapping[str, Signal], time: Values,
-            source: str, problem: str = '') -> None:
+            source: str, problem: str = '', impossible: Sequence[str] = ()) -> None:
         self.run = run
+        self.impossible = tuple(impossible)
+        """The signals of which `possible` has left samples out."""
         self.problem = problem
         """As `RecordedRun.problem`: if there is one, ``run`` has names and kinds only."""
         self.time = time
@@ -92,6 +96,17 @@ class Signals(Mapping[str, Values]):
     def drawn(self, name: str) -> Signal:
         """Return a signal as `over_time`; without values if it was not recorded."""
         return self._signals.get(name, Signal(np.zeros(0), np.zeros(0)))
+
+    def possible(self) -> 'Signals':
+        """Return the signals with NaN for numbers beyond `LARGEST`, which cannot be drawn."""
+        impossible = []
+        signals = dict(self._signals)
+        for name, (t, values) in self._signals.items():
+            beyond = np.abs(values) > LARGEST
+            if beyond.any():
+                impossible.append(name)
+                signals[name] = Signal(t, np.where(beyond, np.nan, values))
+        return Signals(self.run, signals, self.time, self._source, self.problem, impossible)
 
     def supply_of(self, actuator: str) -> str:
         """Return the name of the pressure of the supply that feeds an actuator."""

@@ -1,5 +1,6 @@
 """The page of a run and its figures."""
 
+import os
 from pathlib import Path
 import re
 from xml.etree import ElementTree
@@ -42,6 +43,9 @@ def test_another_page_is_not_replaced(tmp_path):
     assert page.read_text() == 'precious' and not list(tmp_path.glob('*.png'))
     with pytest.raises(BagError, match='is a directory, must be the name of the page'):
         write_report(recorded(GOLDEN / 'rotor_step'), tmp_path)
+    os.mkfifo(tmp_path / 'pipe')
+    with pytest.raises(BagError, match='pipe: is no file, must be the name of the page'):
+        write_report(recorded(GOLDEN / 'rotor_step'), tmp_path / 'pipe')
 
 
 def test_a_report_is_replaced_by_one(tmp_path):

@@ -36,6 +36,17 @@ def test_a_quiet_run_is_good():
     assert not texts(found, NOTE) and not texts(found, BAD)
 
 
+def test_samples_that_no_run_has_are_left_out_and_told():
+    """Infinity and 1e308 of a damaged bag cannot be drawn; NaN is what was not measured."""
+    places = np.full(101, 0.04)
+    places[[3, 5, 7]] = np.inf, -1.7e308, np.nan
+    own = signals(position=places, force=np.full(101, 2e3)).possible()
+    assert own.impossible == ('ram.position',)
+    assert np.flatnonzero(np.isnan(own['ram.position'])).tolist() == [3, 5, 7]
+    assert own['ram.force'].tolist() == [2e3] * 101
+    assert 'Not shown: samples beyond 1e+30 of ram.position.' in texts(verdict(own, [], ''), BAD)
+
+
 def test_an_end_that_was_none_is_bad():
     found = verdict(signals(), [], 'The run ended by an error: lost.')
     assert found[0] == (BAD, 'The run ended by an error: lost.')
