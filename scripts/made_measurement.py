@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 import math
 from pathlib import Path
+from typing import Any
 
 import isa_ros
 from isa_ros.controller import Controller, Setpoint, State
@@ -35,9 +36,10 @@ class Sweep(Controller):
 
 def measured(
         directory: Path, duration: float, changes: Mapping[str, float], *, noise: float = 1.0,
-        clock_ppm: float = CLOCK_PPM) -> tuple[Path, Path]:
-    """Return a CSV file of rig_linear with ``changes``, and its mapping; seed 5 of the noise."""
-    result = isa_ros.load('rig_linear', changes=changes).simulate(duration, [Sweep()])
+        clock_ppm: float = CLOCK_PPM,
+        machine: str | Mapping[str, Any] = 'rig_linear') -> tuple[Path, Path]:
+    """Return a CSV file of a machine with ``changes``, and its mapping; seed 5 of the noise."""
+    result = isa_ros.load(machine, changes=changes).simulate(duration, [Sweep()])
     random = np.random.default_rng(5)
     t = result.time
     columns = [1e3 * t, [1e3 * wanted(own) for own in t]]

@@ -10,6 +10,8 @@ from isa_ros.cli.shared_arguments import changes, figure_to_write, json_file, po
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.errors import ConfigError
 
+RUNS_OF_A_LINE = 25     # of the search, where progress is written to a file
+
 
 def against_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa against`."""
@@ -47,9 +49,17 @@ def against(options: Namespace) -> bool:
     refuse_figure(options.out)
     run = isa_ros.load(find(options.config, CONFIG), changes=values_of(options.set, '--set'))
     line = terminal_line(sys.stderr)
+
+    def searching(n: int) -> None:
+        if line:
+            line.show(f'isa: run {n} of the search')
+        elif n % RUNS_OF_A_LINE == 0:
+            begun(f'run {n} of the search')
+
+    def begun(text: str) -> None:
+        print(f'isa: {text}', file=sys.stderr, flush=True)
     found = compared(
-        options.measured, options.mapping, run, options.free, options.duration,
-        lambda n: line.show(f'isa: run {n} of the search') if line else None)
+        options.measured, options.mapping, run, options.free, options.duration, searching, begun)
     if line:
         line.erase()
     print(as_text(found))

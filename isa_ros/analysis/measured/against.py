@@ -48,11 +48,13 @@ def actuator_of(run: Run, wanted: str | None) -> str:
 
 def against(
         path: Path, mapping: Path, run: Run, free: Sequence[str], duration: float | None = None,
-        progress: Callable[[int], object] = lambda n: None) -> Against:
+        progress: Callable[[int], object] = lambda n: None,
+        begun: Callable[[str], object] = lambda text: None) -> Against:
     """
     Return a measurement beside a simulation with its commands.
 
-    ``free`` are keys as `free_of` has them, none for the usual ones, or the word `NONE`.
+    ``free`` are keys as `free_of` has them, none for the usual ones, or the word `NONE`. ``begun``
+    is told once what is compared, before it is simulated.
 
     Raises
     ------
@@ -68,6 +70,7 @@ def against(
         raise ConfigError(f'{own.name}: has commands only, nothing to compare a simulation with')
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
+    begun(_what(measurement, time))
     simulated = played(run, name, measurement, time)
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
     found = closed(run, name, measurement, keys, time, progress) if keys else []
@@ -88,6 +91,15 @@ def _time(measurement: Measurement, duration: float | None, step: float) -> floa
         raise ConfigError(f'{measurement.name}: lasts {last:g} s, must be {step:g} to '
                           f'{LONGEST_S:g} s; --duration takes a part of it')
     return n * step
+
+
+def _what(measurement: Measurement, time: float) -> str:
+    """Return how much is compared: its samples, their rate and the simulated time."""
+    t = max((own.t for own in measurement.outputs.values()), key=len)
+    span = float(t[-1] - t[0])
+    rate = f' at {digits((len(t) - 1) / span, 4)} Hz' if span > 0.0 else ''
+    return (f'{measurement.name}: {len(t)} samples, {digits(span, 4)} s{rate}; '
+            f'{digits(time, 4)} s are compared')
 
 
 def _fits(

@@ -2,8 +2,7 @@
 Parameters that bring a simulated machine closer to a measured one: least squares, intervals.
 
 The residuals of all signals that both have, each over the standard deviation of the measured one,
-are minimised within the declared ranges (scipy's trust region, its derivatives by differences of
-`DIFFERENCE`). Their 95 % intervals allow for residuals that hang together over `CORRELATION`; they
+go to `search`. The 95 % intervals allow for residuals that hang together over `CORRELATION`; they
 hold for this model: what it lacks, the parameters take upon them.
 """
 
@@ -11,17 +10,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, NamedTuple
 
-from isa_ros.analysis.identification.estimation import half_widths, Linearised
 from isa_ros.analysis.measured.fit import Floats
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.playback import played
+from isa_ros.analysis.measured.search import Box, searched
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.scripting.run import Run
 import numpy as np
-from scipy.optimize import least_squares
 
 DEFAULT = ('load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus')
 """Keys that are free if none are named, as far as the actuator has them."""
@@ -29,17 +27,12 @@ DEFAULT = ('load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_m
 CLOCK, DELAY = 'clock_ppm', 'delay_ms'
 """Free keys of the measurement itself: its clock and its delay against those of its commands."""
 
-DIFFERENCE = 0.1        # of a parameter's size: what is less drowns in the steps of converters
 REACH = 10.0            # a parameter is searched between a tenth and ten times its value
 CORRELATION = 0.4       # s, as for `isa identify`
 WIDEST = 0.5            # half of an interval over the estimate, beyond which it is not determined
 POINTS = 2000           # samples of a signal among the residuals, at most
 _RANGES = {CLOCK: (-1000.0, 1000.0, 100.0), DELAY: (-50.0, 50.0, 1.0)}
 """Bounds, and size of a step."""
-_REFUSED = 10.0         # times the residuals of the start: those of values that are refused
-_REFINEMENTS = 3        # steps with central differences, at most
-_SMALL_STEP = 0.005     # of a parameter's size: less is not taken further
-_MOST_RUNS = 30         # of the search, without those for its derivatives
 
 
 class Free(NamedTuple):
@@ -168,60 +161,17 @@ def closed(
         except (ParameterError, SimulationDiverged):
             if start is None:
                 raise
-            return start * _REFUSED
+            return np.full_like(start, np.inf)
         found = _residuals(measurement, simulated, grid, values)
         start = found if start is None else start
         return found
 
-    low, high = (np.array([getattr(own, end) / own.size for own in free])
-                 for end in ('low', 'high'))
-    found = least_squares(
-        residuals, [own.start / own.size for own in free], jac='2-point', diff_step=DIFFERENCE,
-        x_scale=1.0, bounds=(low, high), ftol=1e-3, xtol=1e-3, max_nfev=_MOST_RUNS)
-    theta, widths = _refined(residuals, found.x, low, high, grid)
-    return [Closed(own, float(x * own.size), float(width * own.size))
-            for own, x, width in zip(free, theta, widths)]
-
-
-def _refined(
-        residuals: Callable[[Floats], Floats], theta: Floats, low: Floats, high: Floats,
-        grid: Floats) -> tuple[Floats, Floats]:
-    """
-    Return theta after steps with central differences, and the half-widths, each (n,).
-
-    What the differences leave over, half of f(theta + h) - 2 f(theta) + f(theta - h), is the
-    curvature and the roughness of the simulation: an error of the residuals beside their noise.
-    """
-    here = residuals(theta)
-    for _ in range(_REFINEMENTS):
-        slopes, rough = _central(residuals, theta, here, low, high)
-        step = np.linalg.lstsq(slopes, -here, rcond=1e-10)[0]
-        better = np.clip(theta + step, low, high)
-        there = residuals(better)
-        gained = float(here @ here) - float(there @ there)
-        if gained <= 0.0:
-            break
-        theta, here = better, there
-        if np.all(np.abs(step) < _SMALL_STEP):
-            break
-    groups = np.tile(np.arange(len(grid)), len(here) // len(grid))
+    box = Box(np.array([own.low for own in free]) / size,
+              np.array([own.high for own in free]) / size)
     lags = max(1, round(CORRELATION / float(np.median(np.diff(grid)))))
-    return theta, half_widths(Linearised(here, -slopes, -slopes), groups, lags, rough)
-
-
-def _central(
-        residuals: Callable[[Floats], Floats], theta: Floats, here: Floats, low: Floats,
-        high: Floats) -> tuple[Floats, list[Floats]]:
-    """Return the derivatives (n_residuals, n) of the residuals, and what they leave over."""
-    slopes, rough = [], []
-    for k in range(len(theta)):
-        above, below = theta.copy(), theta.copy()
-        above[k] = min(theta[k] + DIFFERENCE, high[k])
-        below[k] = max(theta[k] - DIFFERENCE, low[k])
-        up, down = residuals(above), residuals(below)
-        slopes.append((up - down) / (above[k] - below[k]))
-        rough.append(0.5 * (up - 2.0 * here + down))
-    return np.stack(slopes, axis=1), rough
+    found = searched(residuals, np.array([own.start for own in free]) / size, box, lags)
+    return [Closed(own, float(x * own.size), float(width * own.size))
+            for own, x, width in zip(free, found.theta, found.half_widths)]
 
 
 def shifted(signal: Signal, values: Mapping[str, float]) -> Signal:
@@ -240,11 +190,17 @@ def _grid(measurement: Measurement, duration: float) -> Floats:
 def _residuals(
         measurement: Measurement, simulated: Mapping[str, Signal], grid: Floats,
         values: Mapping[str, float]) -> Floats:
-    """Return the residuals of all signals, one after the other, each as long as the grid."""
+    """
+    Return the residuals (n_signals, n), each over the spread of what is measured.
+
+    They are at measured samples, the first from each instant of the grid: between samples the
+    noise would be less, and a clock be found that brings them there.
+    """
     found = []
     for quantity, own in simulated.items():
-        measured = shifted(measurement.outputs[quantity], values)
+        measured = measurement.outputs[quantity]
+        at = np.minimum(np.searchsorted(measured.t, grid), len(measured.t) - 1)
+        t, values_there = shifted(Signal(measured.t[at], measured.values[at]), values)
         spread = float(np.std(measured.values)) or 1.0
-        found.append((np.interp(grid, own.t, own.values)
-                      - np.interp(grid, measured.t, measured.values)) / spread)
-    return np.concatenate(found)
+        found.append((np.interp(t, own.t, own.values) - values_there) / spread)
+    return np.stack(found)

@@ -22,6 +22,18 @@ from scripts.made_measurement import CLOCK_PPM, measured
 DURATION = 3.0  # of CORRELATION, 0.4 s, enough for an interval
 TRUE = {'actuators.ram.load.inertia': 65.0,
         'actuators.ram.parameters.plant.friction.viscous': 520.0}
+CYLINDER = {
+    'name': 'own', 'supply': {
+        'kind': 'constant', 'pressure_mpa': 14.0, 'return_pressure_mpa': 0.0},
+    'actuators': {'ram': {
+        'model': 'cylinder', 'load': {'kind': 'mass', 'inertia': 104.0},
+        'initial_position_mm': 50.0, 'parameters': {'plant': {
+            'drive': {'bore_mm': 50.0, 'rod_mm': 36.0, 'stroke_mm': 300.0,
+                      'rated_pressure_mpa': 14.0},
+            'valve': {'rated_drop_mpa': 7.0,
+                      'flow': {'rated_flow_lpm': 40.0, 'rated_current_ma': 40.0}},
+            'spool': {'frequency_hz': 80.0, 'at': 'minus_90_deg', 'damping_ratio': 0.8}}}}}}
+"""Its forces are little more than the noise of a load cell."""
 
 
 @pytest.fixture(scope='module')
@@ -62,6 +74,20 @@ def test_the_parameters_of_the_machine_are_found(press: tuple[Path, Path]) -> No
                for line in text)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize('start', [686.9, 1236.4])
+def test_a_noisy_load_cell_hides_no_friction(tmp_path: Path, start: float) -> None:
+    """Viscous friction of 1236.4 Ns/m is found from its data sheet's value as from itself."""
+    key = 'plant.friction.viscous'
+    path, mapping = measured(
+        tmp_path, DURATION, {f'actuators.ram.parameters.{key}': 1236.4}, noise=2.0,
+        clock_ppm=0.0, machine=CYLINDER)
+    found, = against(path, mapping, isa_ros.load(CYLINDER, changes={
+        f'actuators.ram.parameters.{key}': start}), [key]).parameters
+    assert found.free.start == pytest.approx(start)
+    assert abs(found.value - 1236.4) < found.half_width < 150.0
+
+
 def test_the_command_writes_numbers_and_figure(
         press: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, mapping = press
@@ -73,7 +99,9 @@ def test_the_command_writes_numbers_and_figure(
     assert set(tree['fits']) == {'position', 'force', 'pressure_a', 'pressure_b'}
     assert tree['fits']['position']['n'] == 301
     assert (tmp_path / 'x.png').read_bytes().startswith(b'\x89PNG')
-    assert capsys.readouterr().out.splitlines()[1].split() == ['NRMSE', 'delay', 'gain', 'left']
+    shown = capsys.readouterr()
+    assert shown.out.splitlines()[1].split() == ['NRMSE', 'delay', 'gain', 'left']
+    assert shown.err == 'isa: press.csv: 3001 samples, 3 s at 1000 Hz; 0.3 s are compared\n'
 
 
 def test_the_run_begins_as_the_measurement_and_follows_its_command(

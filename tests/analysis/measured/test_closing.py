@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from isa_ros.analysis.measured import closing
-from isa_ros.analysis.measured.closing import _central, Closed, closed, DIFFERENCE, Free, shifted
+from isa_ros.analysis.measured.closing import Closed, closed, Free, shifted
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.errors import ParameterError
@@ -69,13 +69,3 @@ def test_a_measurement_is_shifted_to_the_clock_of_its_commands() -> None:
     found = shifted(signal, {'clock_ppm': 500.0, 'delay_ms': 20.0})
     assert found.t == pytest.approx([-0.02, 2.0 / 1.0005 - 0.02], abs=1e-12)
     assert found.values is signal.values
-
-
-def test_differences_at_a_bound_are_one_sided() -> None:
-    """A line has its slope there too; a parabola leaves h^2 over where both sides are free."""
-    def of(theta: np.ndarray) -> np.ndarray:
-        return np.array([3.0 * theta[0] + theta[1] ** 2, -2.0 * theta[0]])
-    theta = np.array([5.0, 0.7])
-    slopes, rough = _central(of, theta, of(theta), np.array([0.0, 0.0]), np.array([5.0, 5.0]))
-    assert slopes == pytest.approx(np.array([[3.0, 1.4], [-2.0, 0.0]]), abs=1e-9)
-    assert rough[1] == pytest.approx([DIFFERENCE ** 2, 0.0], abs=1e-9)

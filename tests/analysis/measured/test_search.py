@@ -1,0 +1,98 @@
+"""The search over machines that are formulas, rough as simulations with friction are."""
+
+from isa_ros.analysis.measured.search import Box, cost_of, left_of, searched
+import numpy as np
+import pytest
+
+N = 1500
+TRUE = 1.8
+SWING = np.sin(np.linspace(0.0, 60.0, N))
+BOX = Box(np.array([0.1]), np.array([10.0]))
+LAGS = 40
+
+
+def noise(seed: int, spread: float) -> np.ndarray:
+    return np.random.default_rng(seed).normal(0.0, spread, N)
+
+
+def rough(theta: np.ndarray) -> np.ndarray:
+    """Return a quiet signal that knows the parameter, and a loud and rough one that does not."""
+    here = noise(int(1e6 * float(theta[0])), 0.04)
+    return np.stack([0.004 * (theta[0] - TRUE) * SWING + noise(1, 0.002), noise(2, 0.19) + here])
+
+
+@pytest.mark.parametrize('start', [0.7, 1.0, 1.8, 4.0])
+def test_a_loud_and_rough_signal_hides_nothing(start: float) -> None:
+    """The true value is in the interval from any start, and the interval is useful."""
+    found = searched(rough, np.array([start]), BOX, LAGS)
+    assert abs(found.theta[0] - TRUE) < found.half_widths[0] < 0.2
+
+
+def test_a_parameter_that_no_signal_knows_has_no_narrow_interval() -> None:
+    """Roughness alone is no information."""
+    def ignorant(theta: np.ndarray) -> np.ndarray:
+        return rough(theta)[1:]
+    assert searched(ignorant, np.array([1.0]), BOX, LAGS).half_widths[0] > 0.5
+
+
+def test_minima_that_are_as_good_are_within_the_interval() -> None:
+    """A machine that is the same at 1 and at 1.5 does not tell which."""
+    def two(theta: np.ndarray) -> np.ndarray:
+        return np.stack([0.1 * (theta[0] - 1.0) * (theta[0] - 1.5) * SWING + noise(3, 0.01)])
+    found = searched(two, np.array([0.95]), BOX, LAGS)
+    assert found.half_widths[0] > 0.45
+
+
+def test_a_minimum_that_is_worse_does_not_count() -> None:
+    """Near 1.55 some of the swing is left: the search goes on to 1, with a small interval."""
+    def two(theta: np.ndarray) -> np.ndarray:
+        x = theta[0]
+        return np.stack([(x - 1.0) * ((x - 1.6) ** 2 + 0.05) * SWING + noise(3, 0.002)])
+    found = searched(two, np.array([1.6]), BOX, LAGS)
+    assert found.theta[0] == pytest.approx(1.0, abs=0.02) and found.half_widths[0] < 0.1
+
+
+@pytest.mark.parametrize('limit', [1.86, 1.95, 2.1, 3.0])
+def test_values_that_are_refused_are_no_slopes(limit: float) -> None:
+    """Differences that reach into them are one-sided, starts in them are left out."""
+    def machine(theta: np.ndarray) -> np.ndarray:
+        return rough(theta) if theta[0] < limit else np.full((2, N), np.inf)
+    found = searched(machine, np.array([1.0]), BOX, LAGS)
+    assert abs(found.theta[0] - TRUE) < 0.1 and 0.02 < found.half_widths[0] < 0.3
+
+
+def test_intervals_hold_for_most_noise() -> None:
+    """Of 40 measurements 34 at least, three starts in turn: 95 % are meant."""
+    n_held = 0
+    for seed in range(40):
+        quiet, loud = noise(seed, 0.002), noise(100 + seed, 0.19)
+
+        def machine(theta: np.ndarray) -> np.ndarray:
+            here = noise(int(1e6 * float(theta[0])), 0.04)
+            return np.stack([0.004 * (theta[0] - TRUE) * SWING + quiet, loud + here])
+        found = searched(machine, np.array([(0.7, 1.0, 1.8)[seed % 3]]), BOX, LAGS)
+        n_held += abs(found.theta[0] - TRUE) < found.half_widths[0]
+    assert n_held >= 34
+
+
+def test_parameters_that_may_be_0_are_found_from_0() -> None:
+    def line(theta: np.ndarray) -> np.ndarray:
+        return np.stack([(theta[0] + 0.7) * SWING + (theta[1] - 2.5) * np.sqrt(np.abs(SWING))])
+    box = Box(np.array([-3.0, 0.1]), np.array([3.0, 10.0]))
+    found = searched(line, np.array([0.0, 1.0]), box, LAGS)
+    assert found.theta == pytest.approx([-0.7, 2.5], abs=1e-6)
+
+
+def test_a_minimum_beyond_a_bound_ends_at_it() -> None:
+    found = searched(lambda theta: np.stack([(theta[0] - 14.0) * SWING]), np.array([1.0]), BOX,
+                     LAGS)
+    assert found.theta[0] == pytest.approx(10.0)
+
+
+def test_the_cost_is_the_likelihood_of_each_signals_own_noise() -> None:
+    """A signal a tenth as loud takes 2 log(10) from it, whatever the other has."""
+    residuals = np.stack([noise(4, 0.5), noise(5, 3.0)])
+    quieter = residuals * np.array([[0.1], [1.0]])
+    assert cost_of(residuals) - cost_of(quieter) == pytest.approx(2.0 * np.log(10.0), abs=1e-3)
+    assert left_of(quieter) == pytest.approx(np.array([[0.05], [3.0]]), rel=0.05)
+    assert left_of(0.0 * quieter) == pytest.approx(1e-3)
