@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 import sqlite3
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
-from isa_ros.core.suggest import alternatives
+from isa_ros.core.suggest import alternatives, shortened
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError, ConfigError
 from mcap.exceptions import McapError
@@ -17,8 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+T = TypeVar('T')
 
 MCAP, SQLITE = '.mcap', '.db3'
+_KINDS: Mapping[type, str] = {str: 'text', int: 'a whole number', bytes: 'bytes'}
 
 
 class Messages(NamedTuple):
@@ -45,7 +47,7 @@ def read_fields(
     BagError
         It is no bag, is damaged, or a message is not of its type.
     ConfigError
-        It has no such topic, or its messages no such field.
+        It has no such topic, the topic has no messages in CDR, or these no such field.
 
     """
     topics: dict[str, Messages] = {}
@@ -57,13 +59,15 @@ def read_fields(
                 own.times.append(t_ns)
                 own.data.append(data)
     for topic in wanted:
+        if topic in known and topic not in topics:
+            raise ConfigError(f'{path}: the topic {topic} has no messages in CDR')
         if topic not in topics:
             raise ConfigError(f'{path}: has no messages of {topic}; {alternatives(topic, known)}')
     start = min(own.times[0] for own in topics.values())
     found = {}
     for topic, fields in wanted.items():
         own = topics[topic]
-        t = np.array([t_ns - start for t_ns in own.times]) / NS_PER_SECOND
+        t = np.array([t_ns - start for t_ns in own.times], np.float64) / NS_PER_SECOND
         for field, values in _values(own, fields, f'{path}: {topic}').items():
             found[f'{topic} {field}'] = (t, values)
     return found
@@ -108,19 +112,38 @@ def _messages(path: Path, known: set[str]) -> Iterator[tuple[str, str, int, byte
 
 def _of_mcap(path: Path, known: set[str]) -> Iterator[tuple[str, str, int, bytes]]:
     with path.open('rb') as file:
-        for schema, channel, message in make_reader(file, validate_crcs=True).iter_messages():
+        reader = make_reader(file, validate_crcs=True)
+        summary = reader.get_summary()
+        known.update(own.topic for own in (summary.channels if summary else {}).values())
+        for schema, channel, message in reader.iter_messages():
             known.add(channel.topic)
             if channel.message_encoding == 'cdr' and schema is not None:
                 yield channel.topic, schema.name, message.log_time, message.data
 
 
 def _of_sqlite(path: Path, known: set[str]) -> Iterator[tuple[str, str, int, bytes]]:
-    database: Any = sqlite3.connect(f'file:{path}?mode=ro', uri=True)
+    database: Any = sqlite3.connect(f'{path.resolve().as_uri()}?mode=ro', uri=True)
     try:
-        topics = {row[0]: row[1:] for row in database.execute('SELECT id, name, type FROM topics')}
+        topics: dict[Any, tuple[str, str]] = {}
+        for key, name, type_name in database.execute('SELECT id, name, type FROM topics'):
+            where = (path, 'topic', key)
+            topics[key] = _of(str, name, *where, 'name'), _of(str, type_name, *where, 'type')
         known.update(name for name, _ in topics.values())
-        for topic, t_ns, data in database.execute(
-                'SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp, id'):
-            yield *topics[topic], t_ns, data
+        for key, topic, t_ns, data in database.execute(
+                'SELECT id, topic_id, timestamp, data FROM messages ORDER BY timestamp, id'):
+            where = (path, 'message', key)
+            if topic not in topics:
+                raise BagError(f'{path}: message {key}: topic_id = {shortened(repr(topic))}, '
+                               'is not one of its topics')
+            yield (*topics[topic], _of(int, t_ns, *where, 'timestamp'),
+                   _of(bytes, data, *where, 'data'))
     finally:
         database.close()
+
+
+def _of(kind: type[T], value: object, path: Path, row: str, key: object, column: str) -> T:
+    """Return a value of a database, which has types by value, if it is of a kind."""
+    if not isinstance(value, kind):
+        raise BagError(f'{path}: {row} {key}: {column} = {shortened(repr(value))}, '
+                       f'must be {_KINDS[kind]}')
+    return value

@@ -26,6 +26,7 @@ from isa_ros.errors import ConfigError
 
 _ROTARY_UNITS = ('rad', 'deg', 'rad/s', 'Nm')
 _TOP = ('actuator', 'time', 'skip_lines', 'clock_ppm', 'signals')
+_LARGEST_PPM = 1e5    # an oscillator is within 100 ppm, the clock of a script within some %
 _TIME = ('column', 'unit', 'rate_hz')
 _SIGNAL = ('column', 'topic', 'field', 'unit', 'sign', 'scale', 'offset', 'delay_ms')
 
@@ -90,7 +91,7 @@ def load_mapping(path: Path) -> MeasurementMapping:
     if 'column' in time and 'rate_hz' in time:
         raise ConfigError(f'{name}: time has column and rate_hz, must have only one of them')
     unit = time.get('unit', 's')
-    if unit != 's' and getattr(UNITS.get(unit), 'si', '') != 's':
+    if not isinstance(unit, str) or unit != 's' and getattr(UNITS.get(unit), 'si', '') != 's':
         raise ConfigError(f'{name}: time.unit = {unit!r}, must be one of s, ms, us')
     rate = _number(time, 'rate_hz', f'{name}: time', 0.0)
     if 'rate_hz' in time and rate <= 0.0:
@@ -101,11 +102,16 @@ def load_mapping(path: Path) -> MeasurementMapping:
     signals = _section(tree, 'signals', name)
     if not signals:
         raise ConfigError(f'{name}: lacks signals, by quantity: {", ".join(QUANTITIES)}')
+    clock_ppm = _number(tree, 'clock_ppm', name, 0.0)
+    if abs(clock_ppm) > _LARGEST_PPM:
+        raise ConfigError(f'{name}: clock_ppm = {clock_ppm:g}, must be -{_LARGEST_PPM:g} to '
+                          f'{_LARGEST_PPM:g}')
     actuator = tree.get('actuator')
     return MeasurementMapping(
-        name, None if actuator is None else str(actuator), time.get('column'),
+        name, None if actuator is None else str(actuator),
+        _column(time, f'{name}: time'),
         UNITS[unit].scale if unit != 's' else 1.0, rate or None, skipped,
-        _number(tree, 'clock_ppm', name, 0.0) * 1e-6,
+        clock_ppm * 1e-6,
         {quantity: _signal(signals, quantity, f'{name}: signals') for quantity in signals})
 
 
@@ -123,12 +129,23 @@ def _signal(signals: Mapping[str, Any], quantity: str, where: str) -> MappedSign
     if 'unit' not in own:
         raise ConfigError(f'{where}: lacks unit')
     sign = own.get('sign', 1)
-    if sign not in (1, -1):
+    if isinstance(sign, bool) or sign not in (1, -1):
         raise ConfigError(f'{where}.sign = {sign!r}, must be 1 or -1')
     return MappedSignal(
-        Source(own.get('column'), str(own.get('topic', '')), str(own.get('field', ''))),
+        Source(_column(own, where), str(own.get('topic', '')), str(own.get('field', ''))),
         str(own['unit']), sign * _number(own, 'scale', where, 1.0),
         _number(own, 'offset', where, 0.0), _number(own, 'delay_ms', where, 0.0) * MILLI, where)
+
+
+def _column(tree: Mapping[str, Any], where: str) -> str | int | None:
+    """Return the name or number of a column, None if there is none."""
+    if 'column' not in tree:
+        return None
+    column: str | int = tree['column']
+    if isinstance(column, bool) or not isinstance(column, (str, int)):
+        raise ConfigError(
+            f'{where}.column = {column!r}, must be a name, or a whole number from 1')
+    return column
 
 
 def _section(tree: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:

@@ -12,6 +12,10 @@ from isa_ros.analysis.signals.signals import Signal
 from isa_ros.errors import BagError, ConfigError
 import numpy as np
 
+_LONGEST_GAP_S = 1.0
+_LONGEST_GAP_STEPS = 100.0
+"""Longest gap between two samples: the longer of a time and of a number of median steps."""
+
 
 class Measurement(NamedTuple):
     """Signals by quantity: t in s from the first sample, (n,), values in SI, (n,)."""
@@ -37,7 +41,8 @@ def read_measurement(path: Path, mapping: MeasurementMapping, is_rotary: bool) -
     Raises
     ------
     BagError
-        The file cannot be read, or its times do not rise.
+        The file cannot be read, its times do not rise or have a gap, or a time or value is not
+        finite.
     ConfigError
         A column, topic, field or unit of the mapping is not there.
 
@@ -47,16 +52,49 @@ def read_measurement(path: Path, mapping: MeasurementMapping, is_rotary: bool) -
     for name, (t, numbers) in raw.items():
         own = mapping.signals[name]
         scale = scale_of(own.unit, QUANTITIES[name], is_rotary, own.where)
-        if not (np.diff(t) > 0.0).all():
-            k = int(np.argmin(np.diff(t) > 0.0))
-            raise BagError(f'{path}: {name}: the time does not rise after sample {k + 1}, '
-                           f't = {t[k]:g} s')
-        if not np.isfinite(numbers).all():
-            k = int(np.argmin(np.isfinite(numbers)))
-            raise BagError(f'{path}: {name}: sample {k + 1} is {numbers[k]}, must be finite')
+        with np.errstate(over='ignore', invalid='ignore'):
+            values = scale * (own.factor * numbers + own.offset)
+        if not np.isfinite(values).all():
+            k = int(np.argmin(np.isfinite(values)))
+            raise BagError(f'{path}: {name}: sample {k + 1} is {numbers[k]:g}, in SI '
+                           f'{values[k]:g}, must be finite')
         found[name] = Signal(
-            (t - own.delay) / (1.0 + mapping.clock), scale * (own.factor * numbers + own.offset))
-    return Measurement(path.name, found)
+            _risen((t - own.delay) / (1.0 + mapping.clock), f'{path}: {name}'), values)
+    measurement = Measurement(path.name, found)
+    _refuse_gaps(path, measurement)
+    return measurement
+
+
+def _risen(t: Floats, where: str) -> Floats:
+    """Return times in s, (n,), that are finite and rise."""
+    if not np.isfinite(t).all():
+        k = int(np.argmin(np.isfinite(t)))
+        raise BagError(f'{where}: the time of sample {k + 1} is {t[k]:g} s, must be finite')
+    rises = t[1:] > t[:-1]
+    if not rises.all():
+        k = int(np.argmin(rises))
+        raise BagError(f'{where}: the time does not rise after sample {k + 1}, t = {t[k]:g} s')
+    return t
+
+
+def _refuse_gaps(path: Path, measurement: Measurement) -> None:
+    """
+    Refuse a gap in the times of an output, which none of its samples tell about.
+
+    A command holds until the next one: it may pause as long as outputs go on.
+    """
+    outputs = [own.t for own in measurement.outputs.values()]
+    for name, own in measurement.signals.items():
+        t = np.unique(np.concatenate([own.t, *outputs])) if name in measurement.commands else own.t
+        if len(t) < 2:
+            continue
+        steps = np.diff(t)
+        k, usual = int(np.argmax(steps)), float(np.median(steps))
+        longest = max(_LONGEST_GAP_S, _LONGEST_GAP_STEPS * usual)
+        if steps[k] > longest:
+            raise BagError(
+                f'{path}: {name}: a gap of {steps[k]:g} s after t = {t[k]:g} s, must be <= '
+                f'{longest:g} s with steps of {usual:g} s')
 
 
 def _of_csv(path: Path, mapping: MeasurementMapping) -> dict[str, tuple[Floats, Floats]]:
@@ -67,9 +105,11 @@ def _of_csv(path: Path, mapping: MeasurementMapping) -> dict[str, tuple[Floats, 
     found = read_columns(path, wanted, mapping.skip_lines, mapping.name)
     n = len(found[wanted[0]])
     if mapping.time is None:
-        t = np.arange(n) / (mapping.rate or 1.0)
+        with np.errstate(over='ignore'):
+            t = np.arange(n) / (mapping.rate or 1.0)
     else:
-        t = (found[mapping.time] - found[mapping.time][0]) * mapping.time_scale
+        with np.errstate(over='ignore', invalid='ignore'):
+            t = (found[mapping.time] - found[mapping.time][0]) * mapping.time_scale
     return {name: (t, found[column]) for name, column in columns.items()}
 
 

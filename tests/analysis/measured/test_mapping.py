@@ -54,6 +54,17 @@ def test_every_key_has_its_meaning(tmp_path: Path) -> None:
     (('column: stamp, unit: ms', 'rate_hz: 0'), 'time.rate_hz = 0, must be > 0'),
     (('delay_ms', 'delay'), 'map.yaml: signals.position: delay is unknown; the key is delay_ms'),
     (('{column: stamp, unit: ms}', '3'), 'map.yaml: time = 3, must be a section'),
+    (('unit: ms', 'unit: [ms]'), "map.yaml: time.unit = ['ms'], must be one of s, ms, us"),
+    (('unit: ms', 'unit: {a: b}'), "map.yaml: time.unit = {'a': 'b'}, must be one of s, ms"),
+    (('column: 3', 'column: [x]'), "map.yaml: signals.position.column = ['x'], must be a name"),
+    (('column: 3', 'column: 3.0'), 'map.yaml: signals.position.column = 3.0, must be a name, or'),
+    (('column: 3', 'column: true'), 'map.yaml: signals.position.column = True, must be a name'),
+    (('column: 3', 'column: null'), 'map.yaml: signals.position.column = None, must be a name'),
+    (('column: stamp', 'column: [t]'), "map.yaml: time.column = ['t'], must be a name"),
+    (('column: stamp', 'column: true'), 'map.yaml: time.column = True, must be a name, or'),
+    (('sign: -1', 'sign: true'), 'map.yaml: signals.position.sign = True, must be 1 or -1'),
+    (('ppm: 40', 'ppm: -1.0e+6'), 'map.yaml: clock_ppm = -1e+06, must be -100000 to 100000'),
+    (('ppm: 40', 'ppm: 100001'), 'map.yaml: clock_ppm = 100001, must be -100000 to 100000'),
 ])
 def test_a_mistake_is_one_line_with_its_place(
         tmp_path: Path, change: tuple[str, str], expected: str) -> None:
@@ -66,6 +77,12 @@ def test_a_mistake_is_one_line_with_its_place(
 def test_without_signals_the_quantities_are_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match='lacks signals, by quantity: position, velocity, '):
         mapping(tmp_path, 'skip_lines: 3\n')
+
+
+@pytest.mark.parametrize('ppm', [-1e5, 1e5])
+def test_a_clock_may_be_wrong_by_a_tenth(tmp_path: Path, ppm: float) -> None:
+    own = mapping(tmp_path, GOOD.replace('clock_ppm: 40', f'clock_ppm: {ppm:.1f}'))
+    assert own.clock == pytest.approx(ppm * 1e-6, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize('unit, quantity, is_rotary, scale', [

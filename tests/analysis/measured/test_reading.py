@@ -39,7 +39,7 @@ def test_a_file_without_names_has_numbers(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize('text, wanted, expected', [
     ('t,x\n0,a\n', 'x', "data.csv: line 2, column x: 'a', must be a number"),
-    ('t,x\n0,1\n3\n', 'x', 'data.csv: line 3, column x: missing, must be a number'),
+    ('t,x\n0,1\n3\n', 'x', 'data.csv: line 3: 1 cells, the head has 2'),
     ('t,x\n', 'x', 'data.csv: has no rows'), ('\n', 'x', 'data.csv: has no rows'),
     ('t,xx\n0,1\n', 'x', "map: column 'x' is unknown; "),
     ('1,2\n', 3, 'map: column 3, must be 1 to 2'), ('1,2\n', 0, 'map: column 0, must be 1')])
@@ -134,7 +134,8 @@ def test_a_measurement_is_in_si_over_its_true_time(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize('text, mapping, expected', [
     ('t,x\n0,1\n0,2\n', 'time: {column: t}', 'the time does not rise after sample 1, t = 0 s'),
-    ('t,x\n0,1\n1,nan\n', 'time: {column: t}', 'position: sample 2 is nan, must be finite'),
+    ('t,x\n0,1\n1,nan\n', 'time: {column: t}',
+     'position: sample 2 is nan, in SI nan, must be finite'),
     ('t,x\n0,1\n1,2\n', 'skip_lines: 0', 'lacks time, either column and unit or rate_hz')])
 def test_times_rise_and_numbers_are_finite(
         tmp_path: Path, text: str, mapping: str, expected: str) -> None:
