@@ -1,6 +1,6 @@
 """The search over machines that are formulas, rough as simulations with friction are."""
 
-from isa_ros.analysis.measured.search import Box, cost_of, left_of, searched
+from isa_ros.analysis.measured.search import _refined, Box, cost_of, left_of, searched
 import numpy as np
 import pytest
 
@@ -96,3 +96,36 @@ def test_the_cost_is_the_likelihood_of_each_signals_own_noise() -> None:
     assert cost_of(residuals) - cost_of(quieter) == pytest.approx(2.0 * np.log(10.0), abs=1e-3)
     assert left_of(quieter) == pytest.approx(np.array([[0.05], [3.0]]), rel=0.05)
     assert left_of(0.0 * quieter) == pytest.approx(1e-3)
+
+
+def test_residuals_that_hang_together_widen_the_interval() -> None:
+    slow = np.repeat(noise(6, 0.01)[::50], 50)
+
+    def machine(theta: np.ndarray) -> np.ndarray:
+        return np.stack([0.1 * (theta[0] - TRUE) * SWING + slow])
+    narrow, wide = (searched(machine, np.array([1.0]), BOX, lags) for lags in (1, LAGS))
+    assert wide.half_widths[0] > 2.0 * narrow.half_widths[0]
+
+
+def test_what_slopes_leave_over_widens_the_interval() -> None:
+    """A step of the simulation that no noise hides, of 0.1 of the parameter."""
+    def machine(theta: np.ndarray) -> np.ndarray:
+        jump = np.random.default_rng(int(1e6 * float(theta[0]))).choice([-0.1, 0.1])
+        return np.stack([(theta[0] - TRUE + jump) * SWING + noise(7, 0.001)])
+    assert _refined(machine, np.array([1.75]), BOX, LAGS).half_widths[0] > 0.05
+
+
+def test_a_start_that_is_refused_leads_nowhere() -> None:
+    found = _refined(lambda theta: np.full((2, N), np.inf), np.array([1.3]), BOX, LAGS)
+    assert found.theta[0] == 1.3 and found.cost == found.half_widths[0] == np.inf
+
+
+def test_instruments_are_slopes_of_other_points() -> None:
+    """Differences of 10, 20 and 2 % of the parameter, on both sides."""
+    seen = []
+
+    def machine(theta: np.ndarray) -> np.ndarray:
+        seen.append(float(theta[0]))
+        return np.stack([(theta[0] - TRUE) * SWING])
+    _refined(machine, np.array([TRUE]), BOX, LAGS)
+    assert sorted({round(own / TRUE, 6) for own in seen}) == [0.8, 0.9, 0.98, 1.0, 1.02, 1.1, 1.2]
