@@ -1,6 +1,5 @@
 """This checkout against a revision: its files, the order of the runs, and the ratios."""
 
-from pathlib import Path
 import subprocess
 import sys
 
@@ -10,6 +9,7 @@ from isa_ros.bench.spec import LEG, PROCESSES, Spec
 from isa_ros.cli.main import main
 from isa_ros.errors import ConfigError, RunError
 import pytest
+from tests.bench.packages import package_in
 
 SPEC = Spec(LEG, PROCESSES, 10)
 
@@ -84,14 +84,6 @@ def test_the_ratio_is_the_median_of_those_of_pairs():
         'the leg, processes: processor time of a tick, over v1')
     assert host.value == pytest.approx(2.0) and host.is_reached is False
     assert host.note == '1.0 us before, 2.0 us now'
-
-
-def package_in(root: Path) -> Path:
-    """Make an empty package isa_ros; without ``__init__.py`` an installed one would come first."""
-    package = root / 'isa_ros'
-    package.mkdir()
-    (package / '__init__.py').touch()
-    return package
 
 
 def test_a_run_is_that_of_the_files_it_is_given(tmp_path):

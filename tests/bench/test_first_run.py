@@ -8,6 +8,7 @@ import sys
 from isa_ros.bench import first_run
 from isa_ros.errors import RunError
 import pytest
+from tests.bench.packages import package_in
 
 
 def test_it_is_measured_on_request_and_in_a_checkout_only(tmp_path, monkeypatch):
@@ -23,15 +24,13 @@ def test_processor_time_is_that_of_the_run_and_its_children(tmp_path):
             'if len(sys.argv) > 5:\n'
             '    subprocess.run([sys.executable, "-c", "import time\\n'
             'while time.process_time() < 0.3: pass"])\n')
-    (tmp_path / 'isa_ros').mkdir()
-    (tmp_path / 'isa_ros' / '__main__.py').write_text(work)
+    (package_in(tmp_path) / '__main__.py').write_text(work)
     spent, of_host = first_run._spent(tmp_path, Path(sys.executable), 'first')
     assert 0.3 <= spent and 0.3 <= of_host
 
 
 def test_a_run_that_fails_says_why(tmp_path):
-    (tmp_path / 'isa_ros').mkdir()
-    (tmp_path / 'isa_ros' / '__main__.py').write_text('raise SystemExit("no such file")')
+    (package_in(tmp_path) / '__main__.py').write_text('raise SystemExit("no such file")')
     with pytest.raises(RunError, match='^the second run of the wheel: no such file$'):
         first_run._spent(tmp_path, Path(sys.executable), 'second')
 

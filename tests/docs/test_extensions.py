@@ -139,8 +139,8 @@ def with_inclinometer(copied: PatchedCopy) -> None:
     path = f'{leg}leg.py'
     copied.replace(path, 'units: Sequence[InertialUnit] = ()) -> None:',
                    'units: Sequence[InertialUnit] = (), has_calf: bool = False) -> None:')
-    copied.replace(path, 'sample_fields([unit.name for unit in units])\n',
-                   'sample_fields([unit.name for unit in units], has_calf)\n')
+    copied.replace(path, 'sample_fields([unit.name for unit in units])',
+                   'sample_fields([unit.name for unit in units], has_calf)')
     copied.replace(path, 'self._motion.nbytes:].view(\n            np.float64).reshape(-1, AXES)',
                    'self._motion.nbytes:].view(\n            np.float64)[:AXES * len(units)]'
                    '.reshape(-1, AXES)\n'

@@ -226,7 +226,8 @@ def test_a_supply_is_two_files(copied: PatchedCopy) -> None:
         '                        tick.IDEAL)\n')
     copied.replace(path, 'from dataclasses import dataclass\n',
                    'from dataclasses import dataclass\nimport math\n')
-    copied.replace(kernel, "    ('dump', DUMP)])", "    ('dump', DUMP), ('fall', 'f8')])")
+    copied.replace(
+        kernel, "    ('dump_valve', DUMP)])", "    ('dump_valve', DUMP), ('fall', 'f8')])")
     copied.replace(kernel, '        lower(ideal[0], state)\n',
                    '        lower(ideal[0], state)\n        state.pressure -= ideal[0].fall\n')
     assert names_of(copied.touched) == files_of('supply') and len(copied.touched) == 2
