@@ -44,6 +44,7 @@ def test_an_empty_cell_at_the_begin_of_a_line_is_a_cell(tmp_path: Path) -> None:
     ('t,y,x,z\n1,2,3,4\n4,5,6\n', 'line 3: 3 cells, the head has 4'),
     ('t,y,x,z\n1,2,3\n4,5,6,7\n', 'line 2: 3 cells, the head has 4'),
     ('t,y,x\n1,2,3\n\n4,"5,6\n', 'line 4: 2 cells, the head has 3'),
+    ('t,y,x\n1,2,3\n4,5\n6,7,8\n9\n', 'line 3: 2 cells, the head has 3'),
     ('1,2,3\n4,5,6\n7,8,9,10\n', 'line 3: 4 cells, the head has 3'),
     ('t y x\n1 2 3\n4 5 6 7\n', 'line 3: 4 cells, the head has 3')])
 def test_a_row_of_another_length_has_its_line(tmp_path: Path, text: str, expected: str) -> None:
@@ -68,6 +69,24 @@ def test_a_long_entry_is_shortened(tmp_path: Path) -> None:
     with pytest.raises(BagError) as refused:
         columns(tmp_path, f't,x\n1,{"z" * 200_000}\n', 'x')
     assert f"column x: '{'z' * 59}..., must be" in str(refused.value)
+
+
+def test_a_decimal_comma_belongs_to_semicolons(tmp_path: Path) -> None:
+    with pytest.raises(BagError, match="line 2, column x: '1,5', must be a number"):
+        columns(tmp_path, 't,x\n3,"1,5"\n', 'x')
+
+
+def test_a_row_without_numbers_has_its_line(tmp_path: Path) -> None:
+    with pytest.raises(BagError, match="line 3, column x: 'b', must be a number"):
+        columns(tmp_path, 't,x\n1,2\na,b\n', 'x')
+
+
+def test_numbers_with_an_empty_cell_are_not_names(tmp_path: Path) -> None:
+    assert columns(tmp_path, '1,,2\n3,4,5\n', 1, 3) == [[1.0, 3.0], [2.0, 5.0]]
+
+
+def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path: Path) -> None:
+    assert columns(tmp_path, '\ufefft,x\n3,4\n', 't') == [[3.0]]
 
 
 def test_a_name_of_two_columns_is_refused(tmp_path: Path) -> None:

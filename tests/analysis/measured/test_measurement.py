@@ -83,3 +83,11 @@ def test_a_command_may_pause_while_outputs_go_on(last: float, expected: str) -> 
     with pytest.raises(BagError) as refused:
         _refuse_gaps(Path('data.csv'), own)
     assert str(refused.value) == expected
+
+
+def test_an_output_has_no_gap_though_others_go_on() -> None:
+    own = Measurement('data', {
+        'position': Signal(np.arange(181) / 4, np.ones(181)),
+        'force': Signal(np.array([0.0, 0.125, 0.25, 40.25]), np.ones(4))})
+    with pytest.raises(BagError, match='data.csv: force: a gap of 40 s after t = 0.25 s, must be'):
+        _refuse_gaps(Path('data.csv'), own)
