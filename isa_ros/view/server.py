@@ -23,12 +23,12 @@ from isa_ros.view.hub import Hub
 from isa_ros.view.orders import MOST_BYTES, order_of
 
 _BROWSER = Path(__file__).parent / 'browser'
-_THINNING = Path(report.__file__).parent / 'browser' / 'signals.js'
-"""Thins samples for drawing, as in a report."""
+_OF_REPORT = Path(report.__file__).parent / 'browser'
+"""What a report's page has, too: elements, and samples thinned for drawing."""
 _HTML, _SCRIPT, _STYLE = 'text/html', 'text/javascript', 'text/css'
 _FILES = {
     '': (_BROWSER / 'index.html', _HTML), 'page.css': (_BROWSER / 'page.css', _STYLE),
-    'signals.js': (_THINNING, _SCRIPT),
+    **{name: (_OF_REPORT / name, _SCRIPT) for name in ('elements.js', 'signals.js')},
     **{name: (_BROWSER / name, _SCRIPT)
        for name in ('scene.js', 'plots.js', 'controls.js', 'page.js')}}
 _HEADERS = {

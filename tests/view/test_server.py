@@ -54,6 +54,7 @@ def test_the_page_and_its_parts_are_given_with_their_policy(client):
     kinds = {'': 'text/html', 'page.css': 'text/css', 'page.js': 'text/javascript',
              'controls.js': 'text/javascript', 'scene.js': 'text/javascript',
              'plots.js': 'text/javascript',
+             'elements.js': 'text/javascript',
              'signals.js': 'text/javascript', 'uplot.js': 'text/javascript',
              'uplot.css': 'text/css', 'page.json': 'application/json'}
     for path, kind in kinds.items():
@@ -73,7 +74,7 @@ def test_the_page_and_its_parts_are_given_with_their_policy(client):
 def test_the_page_has_the_licence_of_what_draws_it_and_no_script_of_its_own(client):
     assert b'The MIT License' in client.ask('uplot.js').read(2000)
     page = client.ask().read().decode()
-    assert page.count('<script') == page.count('<script src="') == page.count('</script>') == 6
+    assert page.count('<script') == page.count('<script src="') == page.count('</script>') == 7
     assert 'style=' not in page and 'http' not in page
 
 

@@ -27,7 +27,7 @@ _THINNED = ('Too many samples for a page: of each signal there are the least and
             'value in each of {0} parts of the run, and all samples around events.')
 
 _BROWSER = Path(__file__).parent / 'browser'
-_SCRIPTS = ('signals.js', 'charts.js', 'page.js')
+_SCRIPTS = ('elements.js', 'signals.js', 'charts.js', 'page.js')
 _COLORS = 8     # of report.css
 _OPEN = 4       # groups that are open at first
 _PAGE = """<!DOCTYPE html>

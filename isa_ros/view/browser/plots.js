@@ -2,15 +2,6 @@
 // Traces of the last seconds: a store of samples, and a uPlot chart for each panel of one source.
 
 const HEIGHT = 116, LEFT = 64, MOST_ROWS = 60000, COLORS = 4;
-const style = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const element = (parent, tag, className, text) => {
-  const made = parent.appendChild(document.createElement(tag));
-  if (className) made.className = className;
-  if (text !== undefined) made.textContent = text;
-  return made;
-};
-const shown = v => v === undefined || !Number.isFinite(v) ? '–'
-  : v !== 0 && (Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3) ? v.toExponential(3) : v.toPrecision(5);
 
 class Store {                           // the samples of all channels, the oldest forgotten
   constructor(channels, step) {

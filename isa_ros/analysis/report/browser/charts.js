@@ -2,15 +2,6 @@
 // One diagram of the page: a uPlot chart, its legend with exact samples, marks of events.
 
 const HEIGHT = 170, LEFT = 64, RIGHT = 24, LEAST_SAMPLES = 20;
-const style = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const element = (parent, tag, className, text) => {
-  const made = parent.appendChild(document.createElement(tag));
-  if (className) made.className = className;
-  if (text !== undefined) made.textContent = text;
-  return made;
-};
-const shown = v => v === undefined || Number.isNaN(v) ? '–'
-  : v !== 0 && (Math.abs(v) >= 1e5 || Math.abs(v) < 1e-3) ? v.toExponential(3) : v.toPrecision(5);
 
 class TimeView {                        // the part of time that all charts show
   constructor(begin, end, least) {
