@@ -51,12 +51,16 @@ def make(wanted: Wanted, objects: Objects) -> dict[str, str]:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Let processes that are started within ignore Ctrl-C: it is for the one that starts them."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """
+    Let processes that are started within never see Ctrl-C: it is for the one that starts them.
+
+    One that comes meanwhile is blocked and not ignored, in which case it would be lost.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

@@ -254,3 +254,16 @@ def test_an_unknown_target_is_refused(capsys):
         main(['z80'])
     assert ended.value.code == 2
     assert 'target z80: unknown, valid: x86-64-v3, x86-64, aarch64' in capsys.readouterr().err
+
+
+def test_a_ctrl_c_while_a_process_starts_is_not_lost():
+    """It is raised here; a process that was started meanwhile never gets one."""
+    with pytest.raises(KeyboardInterrupt):
+        with make_kernels._without_interrupts():
+            child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(60)'])
+            child.send_signal(signal.SIGINT)
+            os.kill(os.getpid(), signal.SIGINT)
+            with pytest.raises(subprocess.TimeoutExpired):
+                child.wait(1.0)
+    child.kill()
+    assert child.wait() == -signal.SIGKILL
