@@ -148,7 +148,7 @@ def test_what_belongs_to_the_run_is_that_of_the_robots_or_given(tmp_path: Path):
     (pair(robots={'r1': {}}), 'pair.yaml: robots.r1 lacks file'),
     (pair(robots={'r1': 'leg'}), "robots.r1 = 'leg', must be a section"),
     (pair(robots={'r1': {'file': 3}}), 'robots.r1.file = 3, must be the name of a file'),
-    (pair(robots={'r1': {'file': 'log'}}), 'pair.yaml: robots.r1.file: log: no such file; shipp'),
+    (pair(robots={'r1': {'file': 'log'}}), 'pair.yaml: robots.r1.file: log: no such file; did'),
     (legs(step_ms=2.0), 'pair.yaml: robots.r2.step_ms is unknown'),
     (legs(actuators={'kfe': {'preset': 'no'}}),
      "pair.yaml: robots.r2.actuators.kfe.preset = 'no'"),
