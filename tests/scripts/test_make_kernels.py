@@ -159,11 +159,12 @@ def test_progress_on_a_terminal_is_one_line():
 
 @pytest.mark.slow
 def test_ctrl_c_ends_all_at_once(tmp_path):
-    """One line; no process and no object is left."""
+    """One line, and no process or object is left; in the background of a script it is ignored."""
     making = subprocess.Popen(
         [sys.executable, '-m', 'scripts.make_kernels', '--out', str(tmp_path)], cwd=ROOT,
         env={**os.environ, 'PYTHONPATH': str(ROOT)}, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True, start_new_session=True)
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     assert making.stdout is not None
     assert making.stdout.readline().startswith('kernels: 0 of 1, ')
     os.killpg(making.pid, signal.SIGINT)
@@ -256,7 +257,15 @@ def test_an_unknown_target_is_refused(capsys):
     assert 'target z80: unknown, valid: x86-64-v3, x86-64, aarch64' in capsys.readouterr().err
 
 
-def test_a_ctrl_c_while_a_process_starts_is_not_lost():
+@pytest.fixture
+def interruptible():
+    """Take Ctrl-C as at a terminal, also in the background of a script."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_a_ctrl_c_while_a_process_starts_is_not_lost(interruptible):
     """It is raised here; a process that was started meanwhile never gets one."""
     with pytest.raises(KeyboardInterrupt):
         with make_kernels._without_interrupts():
