@@ -33,9 +33,10 @@ LIMIT = 'limit'
 BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
 REPORT_NS = NS_PER_SECOND
-REQUEST, REFUSED = "a controller's request, ", 'refused: '
-"""Beginnings of the lines about requests beyond their range."""
 """Simulated time between two reports of requests to one actuator."""
+REQUEST = "a controller's request, "
+"""Begins the lines about requests beyond their range."""
+_REFUSED = 'refused: '
 NUMBERS = {
     FORCE: ('effort',), POSITION: ('position', 'velocity'),
     IMPEDANCE: ('position', 'velocity', 'effort')}
@@ -259,9 +260,22 @@ class RequestRange:
             try:
                 text = own.admit(requests[row])
             except SetpointError as error:
-                text = f'{REFUSED}{error}'
+                text = f'{_REFUSED}{error}'
                 requests[row] = np.zeros((), COMMAND)
             if text and t_ns >= self._next_report[row]:
                 self._next_report[row] = t_ns + REPORT_NS
                 lines.append(f'{REQUEST}{text}')
         return tuple(lines)
+
+
+def request_told(line: str) -> tuple[str, str, bool] | None:
+    """
+    Return what a line of `RequestRange` tells: actuator, text, whether the request was refused.
+
+    None: it is not such a line.
+    """
+    if not line.startswith(REQUEST):
+        return None
+    told = line.removeprefix(REQUEST)
+    name, _, text = told.removeprefix(_REFUSED).partition(': ')
+    return name, text, told.startswith(_REFUSED)

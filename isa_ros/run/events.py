@@ -8,7 +8,7 @@ behind a link a bag has what has arrived.
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.actuator.setpoint_range import REFUSED as REFUSED_REQUEST, REQUEST
+from isa_ros.actuator.setpoint_range import REQUEST, request_told
 from isa_ros.actuator.tunable import changing
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.changeable import Changeable, changeables
@@ -93,13 +93,9 @@ def events_in(run: RunConfig, history: History) -> list[Event]:
 def _of_requests(history: History, step_ns: int) -> Iterator[Event]:
     """Yield the requests of controllers that were refused or limited."""
     for tick, texts in history.events.items():
-        for text in texts:
-            if text.startswith(REQUEST):
-                what = text.removeprefix(REQUEST)
-                name, _, said = what.removeprefix(REFUSED_REQUEST).partition(': ')
-                yield Event(tick * step_ns / NS_PER_SECOND, name,
-                            REFUSED if what.startswith(REFUSED_REQUEST) else WARNING,
-                            f'{REQUEST}{said}')
+        for name, text, is_refused in filter(None, map(request_told, texts)):
+            yield Event(tick * step_ns / NS_PER_SECOND, name,
+                        REFUSED if is_refused else WARNING, f'{REQUEST}{text}')
 
 
 def _of_device(name: str, samples: Records) -> Iterator[Event]:

@@ -7,6 +7,7 @@ same tick wins.
 """
 
 from collections.abc import Iterator, Mapping
+import math
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import SmartActuator
@@ -20,7 +21,7 @@ from isa_ros.core.changeable import Changeable
 from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.suggest import alternatives
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError, SetpointError
 from isa_ros.plant.plant import plant_record
 from isa_ros.requests import fill_command, refuse_without_effort
@@ -34,13 +35,13 @@ _REQUESTS = {
     'enable': Setpoint(is_enabled=True), 'disable': Setpoint(is_enabled=False),
     'clear_fault': Setpoint(clear_fault=True), 'quick_stop': Setpoint(quick_stop=True)}
 _SHOWN = {'m': ('mm', MILLI), 'rad': ('deg', float(np.radians(1.0))), 'A': ('mA', MILLI),
-          'Pa': ('MPa', 1e6)}
+          'Pa': ('MPa', MPA)}
 """Unit of a slider, and what it is in SI, by unit of the setpoint."""
 _GAIN_RANGE = 4.0
 """Largest value of a gain's slider over the value at the start."""
 _STEPS = 1000
 """Of a slider: so far its ends are within bounds that a value must not reach."""
-_ENDLESS = 6.283185307179586    # rad, either way, of the slider of a motor
+_ENDLESS = math.tau     # rad, either way, of the slider of a motor
 
 
 class Slider(NamedTuple):
@@ -144,8 +145,7 @@ class Controls:
             known = ['position', 'effort', *GAINS.values(), *REFERENCES]
             raise SetpointError(f'{actuator.name}: setpoint {field!r} is unknown; '
                                 f'{alternatives(field, known)}')
-        command = np.zeros(1, COMMAND)[0]
-        fill_command(actuator.name, setpoint, command)
+        command = _command(actuator, setpoint)
         refuse_without_effort(actuator.name, setpoint, actuator.mode)
         limited = actuator.admit(command)
         if field in ('position', 'effort'):
@@ -198,12 +198,18 @@ def _range(own: Changeable) -> tuple[float, float]:
     return low + is_low * step, high - is_high * step
 
 
+def _command(actuator: SmartActuator, setpoint: Setpoint) -> np.void:
+    """Return the `COMMAND` row of a setpoint."""
+    command: np.void = np.zeros(1, COMMAND)[0]
+    fill_command(actuator.name, setpoint, command)
+    return command
+
+
 def _request(actuator: SmartActuator, name: str) -> str:
     if name not in _REQUESTS:
         raise SetpointError(f'request {name!r} is unknown; {alternatives(name, _REQUESTS)}')
-    command = np.zeros(1, COMMAND)[0]
-    fill_command(actuator.name, _REQUESTS[name], command)
-    is_done, answer = actuator.request(command, name.replace('_', ' '))
+    is_done, answer = actuator.request(
+        _command(actuator, _REQUESTS[name]), name.replace('_', ' '))
     if not is_done:
         raise SetpointError(f'{actuator.name}: {answer}')
     return f'{actuator.name}: {answer}'

@@ -56,6 +56,11 @@ class Answer(NamedTuple):
     """Finished ticks when it was taken: it takes effect from there on."""
 
 
+def ticks_text(n: int) -> str:
+    """Return a number of ticks in words."""
+    return f'{n} tick{"s" * (n > 1)}'
+
+
 def order_of(body: bytes) -> Order:
     """
     Return the order in the JSON of a page.

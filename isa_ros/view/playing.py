@@ -9,7 +9,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.view.frames import frame_of, MOST, PERIOD_S, Samples
 from isa_ros.view.hub import Hub
-from isa_ros.view.orders import Answer, Order, PAUSE, SEEK, SPEED, STEP
+from isa_ros.view.orders import Answer, Order, PAUSE, SEEK, SPEED, STEP, ticks_text
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of, recorded
 from isa_ros.view.scene import scene_of
@@ -123,7 +123,7 @@ class Player:
         elif order.what == STEP:
             self._is_paused = True
             self._due = float(min(max(self._tick, int(self._due)) + order.value, self._last))
-            text = f'{order.value} tick{"s" * (order.value > 1)}'
+            text = ticks_text(order.value)
         elif order.what == SPEED:
             self._speed = order.value
             text = f'{order.value:g} times real time'

@@ -29,7 +29,8 @@ from isa_ros.view.columns import Columns
 from isa_ros.view.controls import Controls
 from isa_ros.view.frames import frame_of, Gathering, PERIOD_S
 from isa_ros.view.hub import Hub
-from isa_ros.view.orders import Answer, Order, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP
+from isa_ros.view.orders import (
+    Answer, Order, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP, ticks_text)
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of
 from isa_ros.view.scene import scene_of
@@ -114,7 +115,7 @@ class LiveRun(RowSink):
         if order.what == STEP:
             coordinator.pause(True)
             coordinator.step(order.value)
-            return f'{order.value} tick{"s" * (order.value > 1)}'
+            return ticks_text(order.value)
         if order.what == SPEED:
             if 0.0 < order.value < SLOWEST:
                 raise SetpointError(f'speed: value = {order.value:g}, must be >= {SLOWEST:g}, or '

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from isa_ros.config.robots.urdf import turned
+from isa_ros.config.robots.urdf import axis_of, turned
 from isa_ros.config.robots.urdf_text import element_of
 from isa_ros.errors import ConfigError
 from isa_ros.view.nodes import Floats, Motion, Node, Shape, WORLD
@@ -94,12 +94,7 @@ def _motion(
     channel = moved.joints.get(joint.get('name', ''))
     if motion is Motion.FIXED or channel is None:
         return Motion.FIXED, (0.0, 0.0, 1.0), ()
-    given = joint.find('axis')
-    axis = [1.0, 0.0, 0.0] if given is None else _numbers(given, 'xyz', 3, where)
-    length = math.sqrt(sum(x * x for x in axis))
-    if length == 0.0:
-        raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
-    return motion, [x / length for x in axis], (channel,)
+    return motion, axis_of(joint, where).tolist(), (channel,)
 
 
 def _shapes(link: Element, where: str) -> Iterator[Shape]:

@@ -101,7 +101,6 @@ NOT_RUN = {
     'installing': {"pip install '.[mujoco]'": INSTALLS,
                    './isa demo': INSTALLS,
                    'sudo apt install python3-lz4 python3-zstandard': INSTALLS,
-                   "pip install '.[mujoco]'": INSTALLS,
                    'python -m scripts.make_kernels --all': MINUTES},
     'layouts': {"sed 's,/rotor/,/smart_manifold/,g; s,\"rotor,\"smart_manifold,g' "
                 'rig_rotary.pj3.xml > smart_manifold.pj3.xml': 'needs an installed package',

@@ -27,6 +27,7 @@ MAX_BYTES = 16 << 20    # of one file; meshes are in files of their own
 JOINT_KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating')
 _NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
 _ROUNDING = 1e-15       # of the sine of pi, of which a turn by 90 deg is free
+_ALONG_X = (1.0, 0.0, 0.0)
 _IMPOSSIBLE = 1e-3      # by which a principal moment may exceed the sum of the two others
 
 
@@ -196,17 +197,30 @@ def _joint(element: Element, where: str, links: dict[str, UrdfLink]) -> UrdfJoin
         if link not in links:
             raise ConfigError(f'{where}: {side} = {link!r} is not a link; '
                               f'{alternatives(link, list(links))}')
-    axis = np.array([1.0, 0.0, 0.0])
-    given = element.find('axis')
-    if given is not None and kind not in ('fixed', 'floating'):
-        axis = _vector(given, 'xyz', f'{where}: axis')
-        length = math.sqrt(float(axis @ axis))
-        if length == 0.0:
-            raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
-        axis = axis / length
+    axis = np.array(_ALONG_X) if kind in ('fixed', 'floating') else axis_of(element, where)
     low, high = _range(element, kind, where)
     return UrdfJoint(
         element.attrib['name'], kind, parent, child, _origin(element, where), axis, low, high)
+
+
+def axis_of(joint: Element, where: str) -> Floats:
+    """
+    Return the axis of a joint that moves, of length 1, joint axes, (3,); without ``<axis>`` x.
+
+    Raises
+    ------
+    ConfigError
+        It has no direction, or is not of three finite numbers.
+
+    """
+    given = joint.find('axis')
+    if given is None:
+        return np.array(_ALONG_X)
+    axis = _vector(given, 'xyz', f'{where}: axis')
+    length = math.sqrt(float(axis @ axis))
+    if length == 0.0:
+        raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
+    return axis / length
 
 
 def _range(element: Element, kind: str, where: str) -> tuple[float, float]:
