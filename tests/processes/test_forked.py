@@ -8,7 +8,7 @@ import pytest
 from tests.ros.domains import held_domain
 
 START = """
-import os, signal, socket, subprocess, sys, threading, time
+import contextlib, os, signal, socket, subprocess, sys, threading, time
 from pathlib import Path
 from isa_ros.processes.forked import can_fork, Forked
 
@@ -91,9 +91,14 @@ def test_a_copy_holds_no_file_of_the_original():
         claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         claim.bind(f'\\0isa_ros/test_forked/{os.getpid()}')
         copy = Forked('haa', lambda: signal.pause() or 0)
-        files = Path(f'/proc/{copy.pid}/fd')
-        wait_for(lambda: {os.readlink(f) for f in files.iterdir() if int(f.name) not in (1, 2)}
-                 == {os.devnull})
+
+        def held():
+            for file in Path(f'/proc/{copy.pid}/fd').iterdir():
+                with contextlib.suppress(FileNotFoundError):  # closed since it was listed
+                    if int(file.name) not in (1, 2):
+                        yield os.readlink(file)
+
+        wait_for(lambda: set(held()) == {os.devnull})
         name = claim.getsockname()
         claim.close()
         socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM).bind(name)
