@@ -1,9 +1,10 @@
 """
-The first run of an installed wheel: its kernels come with it, or are compiled.
+The first run of an installed wheel, which brings its kernels.
 
-The wheel is made from this checkout and installed in an environment of its own, which takes what
-the wheel needs from this Python's; the run, the leg's drop for a tenth of a second, finds no
-compiled kernels but those of the wheel.
+The wheel is made from this checkout as a release is, with the libraries of kernels for this
+processor, and installed in an environment of its own, which takes what the wheel needs from this
+Python's; the run, the leg's drop for a tenth of a second, finds no compiled kernels but those of
+the wheel.
 """
 
 import os
@@ -30,7 +31,7 @@ MIB = 1024.0 * 1024.0
 def missing(is_wanted: bool) -> str:
     """Return why the first run is not measured; '' if it is."""
     if not is_wanted:
-        return 'needs --first-run: it makes a wheel and compiles what it does not bring'
+        return 'needs --first-run: it compiles all kernels and makes a wheel'
     return '' if (ROOT / 'setup.py').is_file() else f'needs a checkout, {ROOT} has no setup.py'
 
 
@@ -60,12 +61,23 @@ def first_run_rows() -> list[Row]:
 
 
 def _wheel(place: Path) -> Path:
-    """Make the wheel of this checkout in a directory and return its path."""
+    """Make the wheel of this checkout in a directory, its kernels before, and return its path."""
     source = place / 'source'   # setuptools leaves files where it builds
     shutil.copytree(ROOT, source, ignore=_unneeded)
+    _make_kernels(source, place)
     _pip('wheel', '--no-deps', '--no-build-isolation', '--wheel-dir', str(place), str(source))
     wheel, = place.glob('*.whl')
     return wheel
+
+
+def _make_kernels(source: Path, place: Path) -> None:
+    """Make the libraries of kernels of a checkout for this processor."""
+    ended = subprocess.run(
+        [sys.executable, '-m', 'scripts.make_kernels'], cwd=source,
+        env=_environment(place / 'maker'), stdin=subprocess.DEVNULL, capture_output=True,
+        text=True, timeout=TIMEOUT_S)
+    if ended.returncode:
+        raise RunError(f'kernels of the wheel: {last_line(ended)}')
 
 
 def _unneeded(folder: str, names: list[str]) -> set[str]:

@@ -35,6 +35,12 @@ def test_a_run_that_fails_says_why(tmp_path):
         first_run._spent(tmp_path, Path(sys.executable), 'second')
 
 
+def test_kernels_that_cannot_be_made_say_why(tmp_path):
+    """The checkout has no script that makes them."""
+    with pytest.raises(RunError, match='^kernels of the wheel: .*No module named .*scripts'):
+        first_run._make_kernels(tmp_path, tmp_path)
+
+
 def test_its_environment_has_no_kernels_and_no_checkout(tmp_path, monkeypatch):
     monkeypatch.setenv('NUMBA_CACHE_DIR', '/kept')
     monkeypatch.setenv('PYTHONPATH', '/checkout')
@@ -48,6 +54,9 @@ def test_its_environment_has_no_kernels_and_no_checkout(tmp_path, monkeypatch):
 def test_the_row_is_the_first_run_over_its_aim(monkeypatch):
     """7 s are above 6; the second run and the host time stand below."""
     spent = iter([(7.0, 5.0), (1.5, 2.0)])
+    made = []
+    monkeypatch.setattr(first_run, '_make_kernels', lambda source, place: made.append(
+        source / 'setup.py'))
     monkeypatch.setattr(first_run, '_pip', lambda *arguments: Path(
         arguments[arguments.index('--wheel-dir') + 1], 'a.whl').write_bytes(bytes(3 << 19)))
     monkeypatch.setattr(first_run, '_installed', lambda wheel, environment: environment)
@@ -55,13 +64,18 @@ def test_the_row_is_the_first_run_over_its_aim(monkeypatch):
     row, host, second, size = first_run.first_run_rows()
     assert (row.value, row.is_reached) == (7.0, False)
     assert row.note == '5.0 s of host time; the second run 1.5 s'
+    assert len(made) == 1 and made[0].name == 'setup.py'
     assert (host.value, second.value, size.value) == (5.0, 1.5, 1.5)
     assert {part.part_of for part in (host, second, size)} == {row.name}
 
 
 @pytest.mark.slow
-def test_the_wheel_is_that_of_the_checkout_with_what_it_needs(tmp_path):
+def test_the_wheel_is_that_of_the_checkout_with_what_it_needs(tmp_path, monkeypatch):
     """Installed aside, its package is its own and numba that of this Python."""
+    def make(source, place):
+        (source / 'isa_ros' / 'kernels').mkdir()
+        (source / 'isa_ros' / 'kernels' / 'x86-64.so').write_bytes(b'made')
+    monkeypatch.setattr(first_run, '_make_kernels', make)
     wheel = first_run._wheel(tmp_path)
     python = first_run._installed(wheel, tmp_path / 'environment')
     ended = subprocess.run(
@@ -69,4 +83,5 @@ def test_the_wheel_is_that_of_the_checkout_with_what_it_needs(tmp_path):
         cwd=tmp_path, env=first_run._environment(tmp_path), capture_output=True, text=True)
     own, needed = ended.stdout.split()
     assert own.startswith(str(tmp_path)) and not needed.startswith(str(tmp_path))
+    assert Path(own).with_name('kernels').joinpath('x86-64.so').read_bytes() == b'made'
     assert not (first_run.ROOT / 'build').exists()
