@@ -26,7 +26,6 @@ CONFIG = 'quadruped'
 PROGRAM = 'scenario.controllers.trot.program[3].speed'
 SPEEDS = (0.0, 0.25, 0.5, 0.75, 1.0)    # m/s
 STEADY = 3.0                            # s, from which on the mean speed is taken
-JOLT = 6.0                              # s, of the scenario
 PICTURES = (0.3, 5.88, 6.02, 6.17, 6.32, 6.47, 6.61, 6.76)     # s: quarters of a stride
 FRONT, BACK, HALF = 0.55, -0.55, 0.125      # m, of the trunk's box
 

@@ -24,7 +24,6 @@ SOURCES = (PAPER, WORDS, INPUT, OWN)
 REACHED = 'reached'
 AS_READ = 'as read, not as printed'
 NOT_REACHED = 'not reached'
-VERDICTS = (REACHED, AS_READ, NOT_REACHED)
 REGRESSION = 2.0    # percent
 _LETTERS = 14       # of a title, to an inch of the figure
 _READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
