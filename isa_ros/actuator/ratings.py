@@ -27,16 +27,28 @@ _MEAN = 0.05    # s: some periods of such an oscillation
 def ratings_of(plant: np.record) -> Ratings:
     """Return the ratings of a `PLANT` record."""
     oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
-    most = plant.relief.p_open
-    if valve.most_drop > 0.0:
-        most = min(most, valve.most_drop)
-    flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(most)
+    flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(_rated_drop(plant))
     least = oil.area_a if plant.spring.is_on else min(oil.area_a, oil.area_b)
     return Ratings(
         stroke=math.inf if is_endless(plant) else float(oil.stroke), speed=float(flow / least),
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),
         current_range=float(sensors.current_range),
         opening_pressure=float(plant.relief.p_open), spool_stop=float(valve.x_max))
+
+
+def _rated_drop(plant: np.record) -> float:
+    """
+    Return the drop over an open land at the rated speed, in Pa.
+
+    Twice the part of the relief valves' opening pressure that the valve has over each land: half
+    of it over the two of a double-acting piston, all of it over the one of a single-acting
+    cylinder. A compensator bounds the drop from the supply, so not that of oil which a
+    single-acting cylinder gives to the tank.
+    """
+    opening, compensated = float(plant.relief.p_open), float(plant.valve.most_drop)
+    if plant.spring.is_on:
+        return 2.0 * opening
+    return min(opening, compensated) if compensated > 0.0 else opening
 
 
 def is_endless(plant: np.record) -> bool:

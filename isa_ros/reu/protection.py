@@ -79,7 +79,8 @@ class Ratings(NamedTuple):
 
     stroke: float
     speed: float
-    """At full opening with the opening pressure of the relief valves over one land."""
+    """At full opening with the opening pressure of the relief valves over one land, or twice of it
+    over that of a single-acting cylinder."""
     force_range: float
     pressure_range: float
     current_range: float

@@ -169,8 +169,29 @@ def test_its_ratings_are_those_of_pressure_and_spring():
     assert back * opens == pytest.approx(1400.0, rel=1e-9, abs=0.0)
     plain = plant_record(actuator_sheet('cylinder').plant)[0]
     assert forcing_areas(plain) == (plain.chambers.area_a, plain.chambers.area_b)
+
+
+@pytest.mark.parametrize('compensated', [0.0, 0.8])
+def test_its_rated_speed_has_the_whole_pressure_over_its_one_land_and_twice_of_it(compensated):
+    """20 l/min at 3.5 MPa a land, the compensated drop bounds what comes, not what goes."""
+    sheet = single().plant
+    own = plant_record(override(
+        sheet, 'valve', replace(sheet.valve, compensated_drop_mpa=compensated)))[0]
+    opens = float(own.relief.p_open)
+    assert opens == pytest.approx(22e6, rel=0.2)
+    assert ratings_of(own).speed == pytest.approx(
+        20e-3 / 60.0 * math.sqrt(2.0 * opens / 3.5e6) / AREA, rel=1e-9, abs=0.0)
+
+
+def test_a_double_acting_piston_of_its_size_is_rated_with_two_lands():
+    """On the smaller area, and half of the pressure over each land: 1/sqrt(2)."""
+    own, plain = (plant_record(sheet.plant)[0] for sheet in (single(), actuator_sheet('cylinder')))
     assert ratings_of(own).speed / ratings_of(plain).speed == pytest.approx(
-        ROD_SIDE / AREA, rel=1e-9, abs=0.0)
+        math.sqrt(2.0) * ROD_SIDE / AREA, rel=1e-9, abs=0.0)
+    braked = override(actuator_sheet('cylinder').plant, 'valve', replace(
+        actuator_sheet('cylinder').plant.valve, compensated_drop_mpa=0.8))
+    assert ratings_of(plant_record(braked)[0]).speed / ratings_of(plain).speed == pytest.approx(
+        math.sqrt(0.8e6 / float(plain.relief.p_open)), rel=1e-9, abs=0.0)
 
 
 def test_the_reu_knows_the_sound_spring():

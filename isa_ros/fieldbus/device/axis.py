@@ -55,7 +55,7 @@ class Axis:
         self.rated_force = max(self.force_out, self.force_in)
         """N or Nm: that of the impedance; without one the range of the force sensor."""
         self.rated_speed = ratings_of(plant_record(sound(sheet.plant))[0]).speed
-        """m/s or rad/s at full opening, with the opening pressure of the relief over one land."""
+        """m/s or rad/s, that of `isa_ros.reu.protection.Ratings`."""
         self.gains = initial_gains(sheet.reu)
         bounds = setpoint_bounds(sheet)
         self.largest_gains = tuple(
