@@ -27,6 +27,7 @@ _HEADER = np.dtype([('opcode', 'u1'), ('length', '<u8'), ('channel', '<u2'),
                     ('sequence', '<u4'), ('t_ns', '<u8'), ('published_ns', '<u8')])
 """`MESSAGE_HEADER` for many messages."""
 _MESSAGE = int(Opcode.MESSAGE)
+_END_NS = 2**63     # times of ROS have 64 bits with a sign
 _DECLARATIONS = (Opcode.SCHEMA, Opcode.CHANNEL)
 _TOPIC = re.compile(r'[A-Za-z0-9_/~]{1,255}')
 _TYPE = re.compile(r'[A-Za-z0-9_/]{1,255}')
@@ -159,6 +160,7 @@ class PartReader:
             if self.start_ns is None:
                 self.start_ns = self.end_ns = int(table.times[0])
             self._refuse_decrease(table, where)
+            self._refuse_late(table, where)
             self.end_ns = int(table.times[-1])
             self.counts.update(found)
         return frozenset(found)
@@ -172,6 +174,13 @@ class PartReader:
             raise BagError(
                 f'{where}: time decreases on {self.channels[int(table.channels[k])].topic}, from '
                 f'{before[k]} to {table.times[k]} ns')
+
+    def _refuse_late(self, table: MessageTable, where: str) -> None:
+        """Refuse a time that ROS cannot have, of messages whose time does not decrease."""
+        if table.times[-1] >= _END_NS:
+            raise BagError(
+                f'{where}: t = {table.times[-1]} ns on '
+                f'{self.channels[int(table.channels[-1])].topic}, must be < 2^63 ns')
 
     def _check_index(self, content: bytes, where: str) -> None:
         """Refuse an index that is not of the chunk before it: then another chunk was lost."""

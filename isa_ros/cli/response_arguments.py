@@ -7,7 +7,7 @@ from isa_ros.cli import shared_arguments
 from isa_ros.cli.shared_arguments import (
     count, figure_to_write, like_before, number, positive)
 
-LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
+LOOPS = ('position', 'force', 'torque', 'pressure', 'spool', 'current')
 
 
 def bode(parser: argparse.ArgumentParser) -> None:
@@ -37,17 +37,12 @@ def step(parser: argparse.ArgumentParser) -> None:
         '--duration', type=positive, metavar='S', help='time recorded after the step')
 
 
-def loop_name(text: str) -> str:
-    """Return the name of a loop: the torque loop of a rotary actuator is its force loop."""
-    return 'force' if text == 'torque' else text
-
-
 def tune(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa tune`."""
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
     parser.add_argument(
-        '--loop', type=loop_name, choices=('force',), default='force',
-        help='the loop (default: force, or torque)')
+        '--loop', choices=('force', 'torque'), default='force',
+        help='the loop (default: force; of a rotary actuator torque is the same)')
     parser.add_argument(
         '--phase-margin', type=positive, default=60.0, metavar='DEG',
         help='of the open loop output/error (default: 60 deg)')
@@ -83,8 +78,9 @@ def _rig(parser: argparse.ArgumentParser, names: str) -> None:
         'names', nargs=names, metavar='MODEL|CONFIG',
         help='isa_v5, rig_rotary.yaml, ...; several are drawn in one figure')
     parser.add_argument(
-        '--loop', type=loop_name, choices=LOOPS, default='force',
-        help='the loop to excite; the blocks outside it are off (default: force, or torque)')
+        '--loop', choices=LOOPS, default='force',
+        help='the loop to excite; the blocks outside it are off (default: force; of a rotary '
+             'actuator torque is the same)')
     _actuator(parser)
     parser.add_argument(
         '--versus', action='append', default=[], metavar='KEY=VALUE[,KEY=VALUE...]',

@@ -7,6 +7,8 @@ import math
 import os
 from pathlib import Path
 
+from isa_ros.core.suggest import shortened
+
 PNG = b'\x89PNG\r\n\x1a\n'
 """How a PNG file begins."""
 MOST_PORT = 65535
@@ -48,7 +50,7 @@ def positive(text: str) -> float:
     """Return a finite number > 0."""
     value = number(text)
     if value <= 0.0:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a number > 0')
+        raise argparse.ArgumentTypeError(f'{_quoted(text)} must be a number > 0')
     return value
 
 
@@ -56,7 +58,7 @@ def not_negative(text: str) -> float:
     """Return a finite number >= 0."""
     value = number(text)
     if value < 0.0:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a number >= 0')
+        raise argparse.ArgumentTypeError(f'{_quoted(text)} must be a number >= 0')
     return value
 
 
@@ -67,7 +69,7 @@ def number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f'{text!r} must be a number')
+        raise argparse.ArgumentTypeError(f'{_quoted(text)} must be a number')
     return value
 
 
@@ -87,15 +89,20 @@ def _whole(text: str, least: int, bound: str) -> int:
     except ValueError:
         value = least - 1
     if value < least:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number {bound}')
+        raise argparse.ArgumentTypeError(f'{_quoted(text)} must be a whole number {bound}')
     return value
+
+
+def _quoted(text: str) -> str:
+    return shortened(repr(text))
 
 
 def port(text: str) -> int:
     """Return a port of TCP; 0: any that is free."""
     value = _whole(text, 0, f'from 0 to {MOST_PORT}')
     if value > MOST_PORT:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number from 0 to {MOST_PORT}')
+        raise argparse.ArgumentTypeError(
+            f'{_quoted(text)} must be a whole number from 0 to {MOST_PORT}')
     return value
 
 
@@ -103,7 +110,7 @@ def names(text: str) -> tuple[str, ...]:
     """Return names from a text in which commas separate them."""
     found = tuple(text.split(','))
     if not all(found):
-        raise argparse.ArgumentTypeError(f'{text!r} must be names separated by commas')
+        raise argparse.ArgumentTypeError(f'{_quoted(text)} must be names separated by commas')
     return found
 
 

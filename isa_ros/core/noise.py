@@ -17,6 +17,7 @@ from typing import Any
 
 from isa_ros.core.elementary import cos, log
 from isa_ros.core.kernel import kernel
+from isa_ros.core.suggest import shortened
 from isa_ros.errors import ConfigError
 import numpy as np
 
@@ -47,7 +48,8 @@ def seed_of(value: Any, where: str) -> int:
         seed = -1
     if not 0 <= seed <= LARGEST_SEED:
         raise ConfigError(
-            f'{where} = {value!r}, must be a whole number >= 0 and <= {LARGEST_SEED}')
+            f'{where} = {shortened(repr(value))}, must be a whole number >= 0 and '
+            f'<= {LARGEST_SEED}')
     return seed
 
 

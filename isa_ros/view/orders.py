@@ -1,6 +1,6 @@
 """Orders of a page, checked as far as that takes no run: what, of what, and a value."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import json
 import math
 import sys
@@ -72,9 +72,9 @@ def order_of(body: bytes) -> Order:
 
     """
     try:
-        tree = json.loads(body)
+        tree = json.loads(body.decode(), object_pairs_hook=_of_pairs)
     except (ValueError, RecursionError):
-        raise SetpointError('an order must be JSON') from None
+        raise SetpointError('an order must be JSON in UTF-8') from None
     if not isinstance(tree, dict) or not set(tree) <= set(Order._fields):
         raise SetpointError(f'an order must have {listed(Order._fields)}, no other key')
     order = Order(**{'what': '', **tree})
@@ -90,6 +90,14 @@ def order_of(body: bytes) -> Order:
     if type(order.number) is not int or not 0 <= order.number < _LARGEST_ID:
         raise SetpointError(f'{order.what}: number = {_quoted(order.number)}, must be a number')
     return order._replace(value=_value(order))
+
+
+def _of_pairs(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of JSON whose keys are there once."""
+    tree = dict(pairs)
+    if len(tree) < len(pairs):
+        raise SetpointError('an order must have each key once')
+    return tree
 
 
 def _value(order: Order) -> Any:

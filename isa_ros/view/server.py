@@ -146,6 +146,16 @@ class _Handler(BaseHTTPRequestHandler):
         self.server.hub.orders.put(order)
         self._reply(HTTPStatus.NO_CONTENT)
 
+    def send_error(self, code: int, *texts: str | None) -> None:
+        """Refuse another method, or what is no request."""
+        self.close_connection = True
+        if code != HTTPStatus.NOT_IMPLEMENTED:
+            self._reply(HTTPStatus(code))
+        elif self._path(writes=True) is None:
+            self._refuse()
+        else:
+            self._reply(HTTPStatus.METHOD_NOT_ALLOWED, b'must be GET or POST')
+
     def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002: of http.server
         """Print nothing: the address has the token."""
 
@@ -165,8 +175,11 @@ class _Handler(BaseHTTPRequestHandler):
         if status is not HTTPStatus.NO_CONTENT:
             self.send_header('Content-Type', f'{kind}; charset=utf-8')
             self.send_header('Content-Length', str(len(body)))
+        if status is HTTPStatus.METHOD_NOT_ALLOWED:
+            self.send_header('Allow', 'GET, POST')
         self._end_headers()
-        self.wfile.write(body)
+        if self.command != 'HEAD':
+            self.wfile.write(body)
 
     def _end_headers(self) -> None:
         for name, value in _HEADERS.items():

@@ -200,6 +200,15 @@ def test_time_that_runs_back_is_refused(tmp_path):
         Bag(path)
 
 
+def test_a_time_that_ros_cannot_have_is_refused(tmp_path):
+    """Nanoseconds of 64 bits with a sign."""
+    last = write(tmp_path / 'a.mcap', (0, 5), (1, 2 ** 63 - 1), topics=('/a', '/b'))
+    assert Bag(last).end_ns == 2 ** 63 - 1
+    path = write(tmp_path / 'b.mcap', (0, 5), (1, 2 ** 63), topics=('/a', '/b'))
+    with pytest.raises(BagError, match=r'9223372036854775808 ns on /b, must be < 2\^63 ns'):
+        Bag(path)
+
+
 def test_messages_outside_chunks_are_refused(tmp_path):
     path = tmp_path / 'b.mcap'
     with path.open('wb') as file:

@@ -63,6 +63,17 @@ def test_a_misspelt_choice_is_answered_with_the_nearest(
     assert ended.value.code == 2 and message in printed and printed.count('\n') == 1
 
 
-def test_the_torque_loop_is_the_force_loop() -> None:
-    for command in (['bode', 'isa_v5'], ['step', 'isa_v5'], ['tune', 'isa_v5']):
-        assert make_parser().parse_args([*command, '--loop', 'torque']).loop == 'force'
+@pytest.mark.parametrize('command', ['bode', 'step', 'tune'])
+def test_the_torque_loop_of_a_cylinder_is_refused(
+        command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, 'isa_v5', '--loop', 'torque']) == 2
+    assert capsys.readouterr().err == (
+        'isa: --loop torque: isa_v5 is not rotary, its loop is --loop force\n')
+
+
+@pytest.mark.parametrize(('of', 'least'), [(seed, -1), (count, 0), (positive, 0)])
+def test_a_long_text_is_quoted_in_part(of, least: int) -> None:
+    """Python reads no whole number of more than 4300 digits."""
+    with pytest.raises(ArgumentTypeError, match='^.{61,110}$') as error:
+        of(f'{least}' + '0' * 5000 + ('x' if of is positive else ''))
+    assert '000... must be a' in str(error.value)

@@ -53,7 +53,16 @@ def test_others_are_refused_with_what_they_must_be(tree, message):
 
 @pytest.mark.parametrize('body', [
     b'', b'pause', b'[1]', b'3', b'\xff', b'[' * 100_000, b'{"what": "tune", "value": NaN}',
-    b'{"what": "tune", "value": Infinity}', b'{"what": "seek", "value": 1e999}'])
+    b'{"what": "tune", "value": Infinity}', b'{"what": "seek", "value": 1e999}',
+    b'\xef\xbb\xbf{"what": "restart"}', '{"what": "restart"}'.encode('utf-16')])
 def test_what_is_no_order_is_refused(body):
     with pytest.raises(SetpointError):
         order_of(body)
+
+
+def test_a_key_that_is_there_twice_is_refused():
+    """Which of the two a reader takes is not defined."""
+    for body in (b'{"what": "step", "value": 1, "value": 9}',
+                 b'{"what": "tune", "value": {"a": 1, "a": 1}}'):
+        with pytest.raises(SetpointError, match='^an order must have each key once$'):
+            order_of(body)

@@ -91,6 +91,29 @@ def test_without_the_token_or_from_elsewhere_everything_is_refused(client, path,
     assert client.hub.taken() == []
 
 
+@pytest.mark.parametrize('method', ['HEAD', 'PUT', 'OPTIONS', 'TRACE', 'X'])
+def test_other_methods_are_refused_and_without_the_token_at_first(client, method):
+    own = {'Origin': f'http://{client.host}'}
+    for token, headers, status in (('x', own, 403), (client.token, {'Host': 'evil.org'}, 403),
+                                   (client.token, {}, 403), (client.token, own, 405)):
+        connection = http.client.HTTPConnection(client.host, timeout=_TIMEOUT)
+        connection.request(method, f'/{token}/', headers=headers)
+        answer = connection.getresponse()
+        assert (answer.status, answer.headers['Allow'], answer.headers['Connection']) == (
+            status, 'GET, POST' if status == 405 else None, 'close')
+        assert answer.headers['X-Content-Type-Options'] == 'nosniff'
+        begin = answer.read()[:4]
+        assert begin == b'' if method == 'HEAD' else begin in (b'open', b'must')
+
+
+def test_what_is_no_request_is_refused_without_a_page(client):
+    name, port = client.host.split(':')
+    with socket.create_connection((name, int(port)), _TIMEOUT) as own:
+        own.sendall(b'GET / HTTP/1.1\r\n' + b'a: b\r\n' * 110 + b'\r\n')
+        answer = own.makefile('rb').read()
+    assert answer.startswith(b'HTTP/1.1 431 ') and answer.endswith(b'\r\n\r\n')
+
+
 def test_an_order_of_the_page_is_taken(client):
     assert client.order() == (204, '')
     assert client.order(b'{"what": "step", "value": 3, "number": 8}') == (204, '')

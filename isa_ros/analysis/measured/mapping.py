@@ -131,9 +131,12 @@ def _signal(signals: Mapping[str, Any], quantity: str, where: str) -> MappedSign
     sign = own.get('sign', 1)
     if isinstance(sign, bool) or sign not in (1, -1):
         raise ConfigError(f'{where}.sign = {sign!r}, must be 1 or -1')
+    scale = _number(own, 'scale', where, 1.0)
+    if scale == 0.0:
+        raise ConfigError(f'{where}: scale = 0, must not be 0')
     return MappedSignal(
         Source(_column(own, where), str(own.get('topic', '')), str(own.get('field', ''))),
-        str(own['unit']), sign * _number(own, 'scale', where, 1.0),
+        str(own['unit']), sign * scale,
         _number(own, 'offset', where, 0.0), _number(own, 'delay_ms', where, 0.0) * MILLI, where)
 
 

@@ -26,13 +26,14 @@ _RESPONSES = {'closed': 'closed loop, output/reference', 'plant': 'plant, output
 def bode(options: Namespace) -> bool:
     """Measure frequency responses; return whether all are results: none of the loops hunts."""
     refuse_figure(options.out)
-    low, high = BANDS[options.loop]
     if options.bag is None:
         recorded, benches = None, members(options)
+        low, high = BANDS[benches[0].rig.loop.name]
     else:
         refuse_beside_a_bag(options)
         recorded = from_bag.recorded(options.bag, options.actuator, options.loop)
         benches = [Member('', recorded.rig)]
+        low, high = BANDS[recorded.rig.loop.name]
         low, high = max(low, recorded.lowest()), min(high, LARGEST_SHARE * recorded.rate)
     _refuse_units(options, benches)
     sweep = FrequencySweep(
@@ -60,7 +61,8 @@ def bode(options: Namespace) -> bool:
 def step(options: Namespace) -> None:
     """Measure step responses."""
     refuse_figure(options.out)
-    benches, duration = members(options), options.duration or DURATIONS[options.loop]
+    benches = members(options)
+    duration = options.duration or DURATIONS[benches[0].rig.loop.name]
     title, found = '', []
     responses: list[steps.StepResponse] = []
     for label, bench in benches:
@@ -99,7 +101,7 @@ def _setting(
     return ({'label': label} if label else {}) | {
         'actuator': config.name, 'model': config.model, 'preset': config.preset,
         'set': dict(bench.values), 'load': bench.load,
-        'loop': options.loop, 'unit': unit.symbol,
+        'loop': bench.loop.name, 'unit': unit.symbol,
         'initial_position': config.initial_position,
         'amplitude': measured.amplitude / unit.scale}
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from isa_ros.analysis.response import bode as bodes
 from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.analysis.response.at_rest import RECORDED_S, Rest, rest_of
-from isa_ros.analysis.response.loops import loop_of, PLANT
+from isa_ros.analysis.response.loops import loop_name, loop_of, PLANT
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import chirp_band, Estimator, FrequencySweep, SEGMENT_CYCLES
 from isa_ros.analysis.signals.frequency import SEGMENTS
@@ -45,7 +45,7 @@ class Recorded(NamedTuple):
         return SEGMENT_CYCLES * SEGMENTS * self.rate / ticks
 
 
-def recorded(bag: Path, actuator: str | None, loop_name: str) -> Recorded:
+def recorded(bag: Path, actuator: str | None, wanted: str) -> Recorded:
     """
     Return a loop of an actuator of a bag; without a name its only actuator.
 
@@ -62,14 +62,14 @@ def recorded(bag: Path, actuator: str | None, loop_name: str) -> Recorded:
     if actuator is None and len(names) > 1:
         raise ConfigError(f'--bag {bag}: has {len(names)} actuators, --actuator names one of them')
     config = signals.run.actuator(actuator or names[0])
-    loop = loop_of(config.sheet, loop_name)
-    _refuse_unrecorded(f'{loop_name}_reference', bag)
+    loop = loop_of(config.sheet, loop_name(config, wanted))
+    _refuse_unrecorded(f'{loop.name}_reference', bag)
     trace = {field: signals[f'{config.name}.{field}'] for field in AT_EVERY_TICK}
-    reference = trace[f'{loop_name}_reference']
+    reference = trace[f'{loop.name}_reference']
     changes = np.flatnonzero(np.diff(reference))
     if len(changes) < 2 or len(reference) != len(signals.time):
         raise ConfigError(
-            f'--bag {bag}: {config.name}.{loop_name}_reference must change, and be recorded at '
+            f'--bag {bag}: {config.name}.{loop.name}_reference must change, and be recorded at '
             'every tick')
     load = 'its body' if config.load is None else kind_of(config.load, LocalLoad)
     return Recorded(Rig(signals.run.alone(config), loop, load), trace,

@@ -13,6 +13,7 @@ import math
 from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.core.units import MILLI, MPA
@@ -28,6 +29,7 @@ SPRING_SHARE = 0.5      # at most, over the preload: what alone pulls a single-a
 INNER_SHARE = 0.25      # amplitude over spool travel and current, as in the paper's Table 1
 POSITION_SHARE = 0.01   # amplitude over stroke: within the valve's flow up to tens of Hz
 OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
+FORCE, TORQUE = 'force', 'torque'
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,24 @@ def outermost(sheet: ActuatorSheet, name: str) -> ActuatorSheet:
     return replace(sheet, reu=replace(sheet.reu, **outside))
 
 
+def loop_name(actuator: ActuatorConfig, wanted: str) -> str:
+    """
+    Return the name of a loop that a user names: the torque loop of a rotary actuator is `force`.
+
+    Raises
+    ------
+    ConfigError
+        The torque is wanted of an actuator that has a force.
+
+    """
+    if wanted != TORQUE:
+        return wanted
+    if not actuator.sheet.is_rotary:
+        raise ConfigError(
+            f'--loop {TORQUE}: {actuator.name} is not rotary, its loop is --loop {FORCE}')
+    return FORCE
+
+
 def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
     """Return a loop of an actuator, ready to be excited; as `outermost`."""
     alone = outermost(sheet, name)
@@ -128,7 +148,7 @@ def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
         'current': (INNER_SHARE, float(record['plant']['valve']['x_max']) * current_per_spool),
     }[name]
     return Loop(
-        name=name, label='torque' if name == 'force' and sheet.is_rotary else name,
+        name=name, label=TORQUE if name == FORCE and sheet.is_rotary else name,
         sheet=alone, unit=units[name], inward=inward,
         inward_unit=units[inward.removesuffix('_reference') if inward else 'drive'],
         quantity='position' if name == 'position' else 'effort', per_reference=per_reference,

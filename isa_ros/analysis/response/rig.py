@@ -8,7 +8,8 @@ from typing import Any
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.choice import Choice, Chosen, chosen
-from isa_ros.analysis.response.loops import Loop, loop_of, units_of, UserUnit
+from isa_ros.analysis.response.loops import (
+    Loop, loop_name, loop_of, units_of, UserUnit)
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
@@ -141,7 +142,7 @@ def rig_of(named: Chosen, choice: Choice) -> Rig:
     config = named.run.actuator(named.actuator)
     units = units_of(config.sheet)
     config = replace(config, initial_position=_place(choice.position, config, units['position']))
-    loop = loop_of(config.sheet, choice.loop)
+    loop = loop_of(config.sheet, loop_name(config, choice.loop))
     model = actuator_model(config.model, 'model')
     if choice.keeps_load and config.load is not None:
         kind = kind_of(config.load, LocalLoad)

@@ -12,6 +12,7 @@ import re
 from typing import Any, NamedTuple
 
 from isa_ros.config.text.yaml_text import parse, Tree
+from isa_ros.core.suggest import shortened
 from isa_ros.errors import ConfigError
 
 SCENARIO = 'scenario.'
@@ -49,10 +50,10 @@ def assigned(text: str, where: str) -> tuple[str, Any]:
     """
     key, sign, value = text.partition('=')
     if not key or not sign:
-        raise ConfigError(f'{where} {text!r}, must be KEY=VALUE')
-    tree = parse(f'value: {value}', f'{where} {text}')
+        raise ConfigError(f'{where} {shortened(repr(text))}, must be KEY=VALUE')
+    tree = parse(f'value: {value}', f'{where} {shortened(text)}')
     if list(tree) != ['value']:
-        raise ConfigError(f'{where} {text!r}, must have one value')
+        raise ConfigError(f'{where} {shortened(repr(text))}, must have one value')
     return key, tree['value']
 
 

@@ -47,6 +47,7 @@ def test_every_key_has_its_meaning(tmp_path: Path) -> None:
     (('unit: kN', 'sign: 1'), 'map.yaml: signals.force: lacks unit'),
     (('sign: -1', 'sign: 2'), 'map.yaml: signals.position.sign = 2, must be 1 or -1'),
     (('scale: 0.5', 'scale: x'), "map.yaml: signals.position: scale = 'x', must be a number"),
+    (('scale: 0.5', 'scale: -0.0'), 'map.yaml: signals.position: scale = 0, must not be 0'),
     (('clock_ppm: 40', 'clock_ppm: true'), 'map.yaml: clock_ppm = True, must be a number'),
     (('skip_lines: 7', 'skip_lines: -1'), 'skip_lines = -1, must be a whole number >= 0'),
     (('unit: ms', 'unit: mm'), "map.yaml: time.unit = 'mm', must be one of s, ms, us"),
