@@ -23,6 +23,18 @@ def most_force(plant: LinearPlant | RotaryPlant, area: float) -> float:
     return float(plant.relief.opening_pressure_mpa * MPA * area + stops)
 
 
+def force_bounds(plant: Plant, load: LocalLoad | None) -> tuple[float, float] | None:
+    """
+    Return the least and the largest force that may stay on a load, in N or Nm.
+
+    None: this load or actuator has no such bound.
+    """
+    if not isinstance(load, Mass) or isinstance(plant, MotorPlant):
+        return None
+    area_a, area_b = plant.drive.areas
+    return -most_force(plant, area_a), most_force(plant, area_b)
+
+
 def refuse_overload(plant: Plant, load: LocalLoad | None) -> None:
     """
     Refuse a constant force on a load that drives the piston through its end stop.
@@ -33,13 +45,13 @@ def refuse_overload(plant: Plant, load: LocalLoad | None) -> None:
         It is beyond `most_force`, where a chamber would have no volume.
 
     """
-    if not isinstance(load, Mass) or isinstance(plant, MotorPlant):
+    bounds = force_bounds(plant, load)
+    if bounds is None or not isinstance(load, Mass):
         return
     unit, larger = ('N', 'bore') if isinstance(plant, LinearPlant) else ('Nm', 'displacement')
-    area_a, area_b = plant.drive.areas
-    out, back = most_force(plant, area_b), most_force(plant, area_a)
-    if not -back <= load.force <= out:
+    least, most = bounds
+    if not least <= load.force <= most:
         raise ConfigError(
-            f'load.force = {load.force:g} {unit}, must be {-back:.4g} to {out:.4g} {unit}: beyond '
-            'it the load falls past relief valve and end stop until a chamber has no volume; a '
-            f'larger {larger} carries it')
+            f'load.force = {load.force:g} {unit}, must be {least:.4g} to {most:.4g} {unit}: '
+            'beyond it the load falls past relief valve and end stop until a chamber has no '
+            f'volume; a larger {larger} carries it')

@@ -14,6 +14,7 @@ place that translates; such names are also accepted from users, as before.
 from collections.abc import Iterable, Mapping
 
 from isa_ros.actuator.link import NO_LINK
+from isa_ros.actuator.overload import force_bounds
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import narrowed, unlinked, usable
 from isa_ros.core.changeable import Changeable, changeables, marked, with_changes
@@ -35,6 +36,7 @@ PROTECTION = 'reu.protection.'
 _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
+_FORCE = f'{LOAD}force'
 _VALVE = 'm | A'  # unit, in a sheet, of an output that commands the valve
 
 
@@ -86,11 +88,25 @@ def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, C
     narrower = {**usable(sheet), **unlinked(sheet)}
     others = changeables(sheet) | ({} if load is None else {
         name: own._replace(key=name) for name, own in changeables(load, LOAD).items()})
+    if _FORCE in others:
+        own = others[_FORCE]
+        others[_FORCE] = own._replace(declared={
+            **own.declared, 'doc': f'{own.doc}{_lasting(sheet, load)}'})
     return tunables(sheet) | {
         name: own._replace(declared={
             **narrowed(name, own.declared, narrower),
             'unit': of_coordinate(own.unit, sheet.is_rotary)})
         for name, own in others.items()}
+
+
+def _lasting(sheet: ActuatorSheet, load: LocalLoad | None) -> str:
+    """Return the words for what may stay as force on a load; empty: nothing bounds it."""
+    bounds = force_bounds(sheet.plant, load)
+    if bounds is None:
+        return ''
+    unit = of_coordinate('N | Nm', sheet.is_rotary)
+    return (f'; for longer than a push {bounds[0]:.4g} to {bounds[1]:.4g} {unit}, which the relief '
+            'valves of the file and the end stop bear')
 
 
 def with_changed_load(

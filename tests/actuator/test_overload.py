@@ -5,12 +5,14 @@ import math
 from typing import Any
 
 import isa_ros
-from isa_ros.actuator.overload import most_force, refuse_overload
+from isa_ros.actuator.overload import force_bounds, most_force, refuse_overload
+from isa_ros.actuator.tunable import changing
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs import actuator_config
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.loads.sheets import Mass
+from isa_ros.loads.sheets import Blocked, Mass
+from isa_ros.nodes.actuator.parameters import descriptor
 import pytest
 
 
@@ -81,3 +83,39 @@ def test_motors_and_other_loads_have_no_such_bound() -> None:
 def test_a_vane_is_refused_in_its_own_unit() -> None:
     with pytest.raises(ConfigError, match='^load.force = 1e.06 Nm, .* a larger displacement'):
         refuse_overload(plant_of('rig_rotary.yaml'), Mass(inertia=1.0, force=1e6))
+
+
+def test_the_description_of_a_changing_force_says_what_may_stay() -> None:
+    """A push may be as large as declared: it is the range of the ROS parameter, not the text."""
+    own = load_run(shipped(CONFIG)['rig_linear.yaml']).actuators[0]
+    force = changing(own.sheet, own.load)['load.force']
+    assert force.bounds == {'ge': -2e7, 'le': 2e7}
+    shown = descriptor(force)
+    assert shown.description == (
+        'force on it, e.g. weight; > 0 pushes out; for longer than a push -1.557e+04 to '
+        '2.15e+04 N, which the relief valves of the file and the end stop bear, N')
+    span, = shown.floating_point_range
+    assert (span.from_value, span.to_value) == (-2e7, 2e7)
+
+
+def test_what_the_description_says_is_what_a_file_may_have() -> None:
+    own = load_run(shipped(CONFIG)['lift_table.yaml']).actuators[0]
+    low, high = force_bounds(own.sheet.plant, own.load) or (0.0, 0.0)
+    assert f'; for longer than a push {low:.4g} to {high:.4g} N, ' in changing(
+        own.sheet, own.load)['load.force'].doc
+    for bound in (low, high):
+        refuse_overload(own.sheet.plant, Mass(inertia=1.0, force=0.9999 * bound))
+        with pytest.raises(ConfigError, match=f'must be {low:.4g} to {high:.4g} N'.replace(
+                '+', '[+]')):
+            refuse_overload(own.sheet.plant, Mass(inertia=1.0, force=1.0001 * bound))
+
+
+def test_a_force_without_such_a_bound_is_described_without_it() -> None:
+    own = load_run(shipped(CONFIG)['winch.yaml']).actuators[0]
+    assert isinstance(own.load, Mass)
+    assert changing(own.sheet, own.load)['load.force'].doc == (
+        'force on it, e.g. weight; > 0 pushes out')
+    held = Blocked(inertia=1.0, stiffness=1e8, damping=1e4)
+    rig = load_run(shipped(CONFIG)['rig_linear.yaml']).actuators[0]
+    assert changing(rig.sheet, held)['load.force'].doc == (
+        'force from outside on it, > 0 pushes out')
