@@ -105,8 +105,8 @@ def _lasting(sheet: ActuatorSheet, load: LocalLoad | None) -> str:
     if bounds is None:
         return ''
     unit = of_coordinate('N | Nm', sheet.is_rotary)
-    return (f'; for longer than a push {bounds[0]:.4g} to {bounds[1]:.4g} {unit}, which the relief '
-            'valves of the file and the end stop bear')
+    return (f'; for longer than a push {bounds[0]:.4g} to {bounds[1]:.4g} {unit}, which the '
+            'relief valves of the file and the end stop bear')
 
 
 def with_changed_load(
