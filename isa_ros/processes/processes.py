@@ -143,7 +143,7 @@ class Children:
             self, process: Process, environment: Mapping[str, str]
             ) -> subprocess.Popen[bytes] | Forked:
         arguments = [*process.ros_arguments(self._namespace),
-                     '-p', 'start_type_description_service:=false', '--disable-rosout-logs']
+                     '-p', 'start_type_description_service:=false']
         work = self._work
         if work is not None and can_fork():
             def copy() -> int:

@@ -1,6 +1,7 @@
 """`isa echo`, `isa set` and `isa command`, with an actuator alone in another process."""
 
 from collections.abc import Iterator
+from pathlib import Path
 import re
 
 from isa_ros.cli import talk
@@ -58,6 +59,16 @@ def test_a_setpoint_that_is_rejected_is_2_with_the_reason(
         ram: str, capsys: pytest.CaptureFixture[str]) -> None:
     text = printed(capsys, 'command', ram, '0.9', code=2)
     assert text.startswith('isa: /lab/ram: setpoint rejected: ram: setpoint position = 0.9 m, ')
+
+
+@pytest.mark.parametrize('processes', [['--in-process'], []])
+def test_a_run_gives_the_reason_of_a_rejection_too(
+        tmp_path: Path, domain: int, processes: list[str],
+        capsys: pytest.CaptureFixture[str]) -> None:
+    with started(tmp_path / 'log', 'isa_ros', 'bringup', 'rig_linear', *processes,
+                 '--real-time-factor', '1', '--out', str(tmp_path / 'bag')):
+        text = printed(capsys, 'command', 'ram', '0.9', '--timeout', '60', code=2)
+    assert text.startswith('isa: /ram: setpoint rejected: ram: setpoint position = 0.9 m, ')
 
 
 def test_a_request_that_the_device_declines_is_1(

@@ -45,6 +45,9 @@ _QUIET = {
 }
 """Options of a bring-up's nodes: nothing can be set from outside."""
 
+_ACTUATOR = _QUIET | {'enable_rosout': True}
+"""The same of an actuator: who has sent it a setpoint gets the reason of a rejection."""
+
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Start one process per actuator, coordinate them from this process, and end them."""
@@ -169,7 +172,7 @@ def coordinate_locally(
         namespace, name = parted(placed(session.request.namespace, config.name))
         actuators.append(ActuatorNode(
             _resolver(NodeSetup(config, timing, actuator, session.run.accept)), name,
-            has_mailbox=False, namespace=namespace, **_QUIET))
+            has_mailbox=False, namespace=namespace, **_ACTUATOR))
     controllers = None
     try:
         look_for_other_coordinator(node)
