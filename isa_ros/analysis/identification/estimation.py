@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 import math
 
+from isa_ros.analysis.identification.long_run import Estimator, newey_west
 import numpy as np
 from scipy.stats import t as student_t
 
@@ -103,29 +104,23 @@ def _scale(jacobian: np.ndarray) -> np.ndarray:
 
 def half_widths(
         here: Linearised, groups: np.ndarray, lags: int,
-        systematic: Sequence[np.ndarray] = (), of: np.ndarray | None = None) -> np.ndarray:
+        systematic: Sequence[np.ndarray] = (), of: np.ndarray | None = None,
+        estimator: Estimator = newey_west) -> np.ndarray:
     """
     Return half of the 95 % interval of every parameter, infinite if the data do not bound it.
 
     With ``of`` (m, n_parameters), of these sums of parameters instead.
 
     ``groups`` (n,) is the number of the instant a residual belongs to; residuals of one instant
-    may be correlated, and those of instants up to ``lags`` apart too (Newey and West 1987, a
-    Simple, Positive Semi-definite, Heteroskedasticity and Autocorrelation Consistent
-    Covariance Matrix, Econometrica 55). Student's t with one degree of freedom for every
-    ``lags`` instants instead of the normal distribution, since those are not independent. Each
-    of ``systematic`` (n,) is one standard deviation of an error common to all residuals.
+    may be correlated, and those of instants up to ``lags`` apart too, as ``estimator`` has it,
+    with its degrees of freedom of Student's t. Each of ``systematic`` (n,) is one standard
+    deviation of an error common to all residuals.
     """
     scale = _scale(here.jacobian)
     matrix = (here.instruments / scale).T @ (here.jacobian / scale)
     scores = np.zeros((int(groups.max()) + 1, matrix.shape[0]))
     np.add.at(scores, groups, here.instruments / scale * here.residuals[:, None])
-    spread = scores.T @ scores
-    for lag in range(1, lags + 1):
-        product = scores[lag:].T @ scores[:-lag]
-        spread += (1.0 - lag / (lags + 1.0)) * (product + product.T)
-    n_blocks = np.count_nonzero(scores.any(axis=1)) / (lags + 1.0)
-    freedom = n_blocks - matrix.shape[0] / (lags + 1.0)
+    spread, freedom = estimator(scores, lags)
     singular = np.linalg.svd(matrix, compute_uv=False)
     if freedom < 1.0 or singular[-1] <= 1e-13 * singular[0]:
         return np.full(matrix.shape[0] if of is None else len(of), math.inf)

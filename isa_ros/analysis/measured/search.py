@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from isa_ros.analysis.identification.estimation import half_widths, Linearised
+from isa_ros.analysis.identification.long_run import cosines
 from isa_ros.analysis.measured.fit import Floats
 import numpy as np
 from scipy.optimize import least_squares
@@ -169,7 +170,7 @@ def _refined(residuals: Residuals, theta: Floats, box: Box, lags: int) -> Minimu
             (here / left).ravel(), -_slopes(residuals, theta, box, DIFFERENCE, left),
             -_slopes(residuals, theta, box, WIDER, left))
         step = _step(near)
-        widths = half_widths(near, groups, lags)
+        widths = half_widths(near, groups, lags, estimator=cosines)
         better = np.clip(theta + step, box.low, box.high)
         there = residuals(better)
         if cost_of(there) >= cost_of(here):
@@ -178,7 +179,8 @@ def _refined(residuals: Residuals, theta: Floats, box: Box, lags: int) -> Minimu
         if np.all(np.abs(step) < np.maximum(_SMALL_STEP, _SMALL_SHARE * _finite(widths))):
             break
     rough = [(_bend(residuals, theta, box, k) / left).ravel() for k in range(len(theta))]
-    return Minimum(theta, half_widths(near, groups, lags, rough), cost_of(here))
+    return Minimum(theta, half_widths(near, groups, lags, rough, estimator=cosines),
+                   cost_of(here))
 
 
 def _finite(widths: Floats) -> Floats:
