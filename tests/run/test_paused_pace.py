@@ -3,7 +3,7 @@
 from isa_ros.run.coordinator import Coordinator
 from isa_ros.run.pacing import Pace
 import pytest
-from tests.run.test_coordinator import Rig
+from tests.run.rig import Rig
 from tests.run.test_pacing import Host
 
 PAUSE_S = 60.0
