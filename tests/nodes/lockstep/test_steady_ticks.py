@@ -13,7 +13,7 @@ from isa_ros.run.wire.answers import decode_answer
 from isa_ros.run.wire.steps import decode_step
 import numpy as np
 import pytest
-from tests.run.test_answering import Bench, closed, encoded, INDEX
+from tests.run.answer_bench import Bench, closed, encoded, INDEX
 
 pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='the loop is machine code')
 
