@@ -1,87 +1,20 @@
-"""The launch files: their arguments and the nodes they start."""
+"""The launch files of a leg and of one actuator: their arguments and the nodes they start."""
 
-from importlib.util import module_from_spec, spec_from_file_location
 import os
 from pathlib import Path
-import sys
-from xml.etree import ElementTree
 
 import isa_ros
-from isa_ros.config.paths import CONFIG, CONTROLLERS, find, SCENARIOS
-from isa_ros.config.runs.leg_control import controllers_of
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import CLAIMED_BY
 from isa_ros.processes.processes import MODULES
 from isa_ros.run.options import OPTIONS
 import pytest
 from tests.launch import stand_ins
+from tests.launch.launched import ended, parameters
 from tests.launch.stand_ins import Context, ProcessExited
-from tests.ros.domains import held_domain
 from tests.scripting.test_two_bodies import two_legs
 import yaml
-
-LAUNCH = Path(__file__).parents[2] / 'launch'
-LEG = isa_ros.load('leg').configuration.leg
-
-
-@pytest.fixture
-def installed() -> dict[str, str]:
-    """Return the ROS packages that are installed, with their prefixes; to be filled."""
-    return {}
-
-
-@pytest.fixture
-def actions(monkeypatch, installed):
-    """Return what gives the arguments and the other actions of a launch file."""
-    for name, module in stand_ins.modules().items():
-        monkeypatch.setitem(sys.modules, name, module)
-    monkeypatch.setattr(
-        'ament_index_python.packages.get_packages_with_prefixes', lambda: installed)
-
-    def of(file: str):
-        spec = spec_from_file_location(file.partition('.')[0], LAUNCH / file)
-        module = module_from_spec(spec)
-        spec.loader.exec_module(module)
-        every, = module.generate_launch_description().args
-        arguments = [one for one in every if isinstance(one, stand_ins.DeclareLaunchArgument)]
-        return ({one.args[0]: one.given for one in arguments},
-                [one for one in every if one not in arguments])
-    return of
-
-
-@pytest.fixture
-def launched(actions, monkeypatch):
-    """Return what gives the nodes of leg.launch.py, all launched at once, in one domain."""
-    arguments, (function,) = actions('leg.launch.py')
-    defaults = {name: given['default_value'] for name, given in arguments.items()}
-    with held_domain(monkeypatch):
-        yield lambda **texts: function.given['function'](defaults | texts)
-
-
-@pytest.fixture
-def leg(launched):
-    """Return what gives the nodes of leg.launch.py, of one launch after the other."""
-    def nodes(**texts: str):
-        found = launched(**texts)
-        ended(found)
-        return found
-    return nodes
-
-
-def ended(nodes) -> None:
-    """Release the name that a launch holds, as the end of its coordinator does."""
-    nodes[-1].given['on_exit'](ProcessExited('coordinator-1', 0), Context())
-
-
-def parameters(node, *names: str) -> dict[str, object]:
-    """Return all or some parameters of a node, each of the type that is said to be its own."""
-    values, given = {}, node.given['parameters'][0]
-    for key in names or given:
-        value = given[key]
-        declared = value.given['value_type']
-        assert declared is type(value.args[0]) or declared == list[str]
-        values[key] = value.args[0]
-    return values
 
 
 def test_the_leg_has_every_argument_of_a_bring_up(actions):
@@ -178,142 +111,6 @@ def test_each_of_several_legs_is_shown_in_its_namespace(leg, installed, tmp_path
     assert all(dict(own.given['remappings'])['/tf'] == '/lab/tf' for own in publishers)
     with pytest.raises(ConfigError, match='has no leg or robot, or several'):
         leg(config=str(tmp_path / 'two.yaml'), rviz='true')
-
-
-@pytest.mark.parametrize(('file', 'commands'), [
-    ('leg_trajectory', ['position', 'velocity']), ('leg_torque', ['effort'])])
-def test_ros2_control_has_the_leg_of_the_run_and_the_controllers_of_the_file(
-        leg, installed, file, commands):
-    """A manager with the file and the time of the run, and a spawner of all its controllers."""
-    path = find(file, CONTROLLERS)
-    installed |= dict.fromkeys(
-        ['robot_state_publisher', *controllers_of(path, LEG).packages], '/opt')
-    manager, spawner, publisher, *rest = leg(
-        ros2_control=file, namespace='lab', set='leg.parameters.body.thigh.length_m=0.4')
-    assert len(rest) == 4
-    description = publisher.given['parameters'][0]['robot_description'].args[0]
-    assert '<origin xyz="0.4 0.0 0.0"' in description
-    tag, = ElementTree.fromstring(description).iterfind('ros2_control')
-    assert [one.get('name') for one in tag.iterfind('joint[@name="kfe_joint"]/command_interface')
-            ] == commands
-    assert tag.findtext('hardware/param[@name="joint_commands_topic"]') == '/lab/joint_command'
-    assert (manager.given['package'], manager.given['executable']) == (
-        'controller_manager', 'ros2_control_node')
-    assert manager.given['parameters'] == [str(path.resolve()), {'use_sim_time': True}]
-    assert dict(manager.given['remappings'])['/clock'] == '/lab/clock'
-    assert (spawner.given['package'], spawner.given['executable']) == (
-        'controller_manager', 'spawner')
-    assert spawner.given['arguments'] == [
-        *controllers_of(path, LEG).types, '--controller-manager', 'controller_manager']
-    for node in (manager, spawner):
-        assert node.given['namespace'] == 'lab'
-        with pytest.raises(RuntimeError, match='spawner-5: ended with exit code 1'):
-            node.given['on_exit'](ProcessExited('spawner-5', 1), Context())
-    assert 'ros2_control' not in leg()[0].given['parameters'][0]['robot_description'].args[0]
-
-
-@pytest.fixture
-def robot(actions, monkeypatch):
-    """Return what gives the nodes of robot.launch.py, of one launch after the other."""
-    arguments, (function,) = actions('robot.launch.py')
-    defaults = {name: given['default_value'] for name, given in arguments.items()}
-
-    def nodes(**texts: str):
-        found = function.given['function'](defaults | texts)
-        ended(found)
-        return found
-    with held_domain(monkeypatch):
-        yield nodes
-
-
-def test_a_robot_is_launched_with_every_argument_and_shown_with_its_sensors(
-        actions, robot, installed):
-    """By default the quadruped; the frames of its messages are links of its description."""
-    assert actions('robot.launch.py')[0].keys() == actions('leg.launch.py')[0].keys()
-    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
-    publisher, rviz, *actuators, coordinator = robot(rviz='true')
-    assert len(actuators) == 12 and coordinator.given['executable'] == 'coordinator'
-    description = ElementTree.fromstring(
-        publisher.given['parameters'][0]['robot_description'].args[0])
-    links = {link.get('name') for link in description.iterfind('link')}
-    body, = isa_ros.load('quadruped').configuration.bodies
-    assert {message.frame for message in body.messages(1_000_000)[1:]} <= links
-    assert {f'{joint}{end}' for joint in body.joint_space for end in ('', '_load_cell')} <= links
-    assert publisher.given['namespace'] == ''
-    assert rviz.given['arguments'][2:] == ['-f', 'trunk']
-    assert Path(rviz.given['arguments'][1]).name == 'robot.rviz'
-    shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
-    topics = {one['Topic']['Value'] for one in shown['Displays'] if 'Topic' in one}
-    assert topics == {message.topic[1:] for message in body.messages(1_000_000)
-                      if message.topic.endswith('/ground_contact')}
-
-
-def test_several_robots_have_their_nodes_descriptions_and_frames(robot, installed, tmp_path):
-    """Joints keep their names, and all links are the robot's own, once each."""
-    installed |= {'robot_state_publisher': '/opt'}
-    (tmp_path / 'herd.yaml').write_text(yaml.safe_dump({
-        'name': 'herd', 'robots': {'r1': {'file': 'quadruped'}, 'r2': {'file': 'crane'},
-                                   'r3': {'file': 'leg'}}}))
-    *rest, coordinator = robot(config=str(tmp_path / 'herd.yaml'), namespace='lab')
-    publishers, actuators = rest[:3], rest[3:]
-    assert [own.given['namespace'] for own in publishers] == ['lab/r1', 'lab/r2', 'lab/r3']
-    assert coordinator.given['namespace'] == 'lab'
-    run = isa_ros.load(tmp_path / 'herd.yaml').configuration
-    assert [f"{own.given['namespace']}/{own.given['name']}" for own in actuators] == [
-        f'lab/{own.name}' for own in run.actuators]
-    for own, body in zip(publishers, run.bodies):
-        root = ElementTree.fromstring(own.given['parameters'][0]['robot_description'].args[0])
-        links = [link.get('name') for link in root.iterfind('link')]
-        assert len(set(links)) == len(links)
-        assert all(link.startswith(body.prefix) or link == 'world' for link in links)
-        ends = {end.get('link') for joint in root.iterfind('joint')
-                for end in joint if end.tag in ('parent', 'child')}
-        assert ends == set(links)
-        joints = {joint.get('name') for joint in root.iterfind('joint')}
-        assert set(body.joint_space) <= joints
-        assert dict(own.given['remappings'])['/tf'] == '/lab/tf'
-    with pytest.raises(ConfigError, match='herd.yaml has no leg or robot, or several'):
-        robot(config=str(tmp_path / 'herd.yaml'), rviz='true')
-
-
-def test_ros2_control_has_the_joints_of_a_robot_in_its_namespace(robot, installed, tmp_path):
-    path = find('quadruped_torque', CONTROLLERS)
-    body, = isa_ros.load('quadruped').configuration.bodies
-    installed |= dict.fromkeys(
-        ['robot_state_publisher', 'rviz2', *controllers_of(path, body).packages], '/opt')
-    (tmp_path / 'one.yaml').write_text(yaml.safe_dump({
-        'name': 'one', 'robots': {'r1': {'file': 'quadruped'}}}))
-    manager, spawner, publisher, rviz, *_ = robot(
-        config=str(tmp_path / 'one.yaml'), ros2_control='quadruped_torque', namespace='lab',
-        rviz='true')
-    assert [own.given['namespace'] for own in (manager, spawner, publisher, rviz)] == (
-        4 * ['lab/r1'])
-    assert rviz.given['arguments'][2:] == ['-f', 'r1/trunk']    # a link of the description
-    tag = ElementTree.fromstring(
-        publisher.given['parameters'][0]['robot_description'].args[0]).find('ros2_control')
-    assert [joint.get('name') for joint in tag.iterfind('joint')] == list(body.joint_space)
-    assert tag.findtext('hardware/param[@name="joint_commands_topic"]') == '/lab/r1/joint_command'
-    assert tag.findtext('hardware/param[@name="joint_states_topic"]') == '/lab/r1/joint_states'
-
-
-@pytest.mark.parametrize(('texts', 'message'), [
-    ({}, 'ros2_control:=leg_torque.yaml needs the package controller_manager, not installed'),
-    ({'config': 'rig_rotary'}, 'ros2_control:=leg_torque.yaml: rig_rotary.yaml has no leg'),
-    ({'ros2_control': 'leg_sway'}, 'leg_sway: no such file; shipped: leg_torque.yaml, leg_traj')])
-def test_ros2_control_without_its_packages_a_leg_or_a_file_is_refused(
-        leg, installed, texts, message):
-    installed |= {'robot_state_publisher': '/opt'}
-    with pytest.raises(ConfigError, match=message):
-        leg(**{'ros2_control': 'leg_torque'} | texts)
-
-
-@pytest.mark.parametrize(('texts', 'message'), [
-    ({'rviz': 'true'}, 'rviz:=true needs the package robot_state_publisher, not installed'),
-    ({'rviz': 'maybe'}, 'rviz:=maybe, must be true or false'),
-    ({'rviz': 'true', 'config': 'rig_rotary'}, 'rviz:=true: rig_rotary.yaml has no leg')])
-def test_rviz_without_its_packages_or_a_leg_is_refused(leg, texts, message):
-    with pytest.raises(ConfigError, match=message):
-        leg(**texts)
 
 
 def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
