@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import isa_ros
-from isa_ros.actuator.scales import keys_of, SCALES
+from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.listing import describe
 from isa_ros.config.models import scaling
@@ -14,7 +14,7 @@ from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_reading import run_of, run_of_text
-from isa_ros.config.text.sections import merge, Place, sourced, SourcedValue
+from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
@@ -245,16 +245,6 @@ def test_the_table_shows_the_scaled_value_and_its_source(tmp_path: Path) -> None
     assert 'scales_with' not in run.to_yaml()
 
 
-def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> None:
-    for name in model_names():
-        sheet = default_actuator(name, name).sheet
-        for quantity in SCALES.values():
-            try:
-                assert 0.0 < quantity(sheet) < 1e18
-            except ConfigError as error:
-                assert 'two straight lines' in str(error)
-
-
 def test_a_quantity_is_computed_once_for_all_values_that_scale_with_it(monkeypatch) -> None:
     """Of the model and of the own actuator, for its plant and for its REU: four at most."""
     counts: dict[str, int] = {}
@@ -268,30 +258,6 @@ def test_a_quantity_is_computed_once_for_all_values_that_scale_with_it(monkeypat
         name: counted(name, quantity) for name, quantity in SCALES.items()})
     own()
     assert counts['piston_area'] >= 2 and max(counts.values()) <= 4, counts
-
-
-@pytest.mark.parametrize(('values', 'message'), [
-    ({'scales_with': 'stall'}, 'm.yaml: gain.scales_with.stall is unknown; did you mean stall_'),
-    ({'scales': 'stall_out'}, 'm.yaml: gain.scales is unknown; did you mean scales_with'),
-])
-def test_an_unknown_quantity_is_refused(values: dict[str, str], message: str) -> None:
-    with pytest.raises(ConfigError, match=message):
-        sourced({'gain': {'value': 1.0, 'source': 'assumed', **values}}, Place('m.yaml'))
-
-
-def test_a_replaced_value_does_not_scale() -> None:
-    """A later layer replaces the value with its quantity."""
-    old = SourcedValue(1.0, 'm.yaml: a', 'assumed', 'stroke')
-    new = SourcedValue(2.0, 'r.yaml: a', 'r.yaml')
-    assert merge({'a': old}, {'a': new}) == {'a': new}
-
-
-@pytest.mark.parametrize(('scale', 'keys'), [
-    ('stall_in', 'plant.drive'), ('valve_lag', 'plant.spool'), ('full_flow', 'plant.valve'),
-    ('force_gain', 'plant.valve and plant.drive')])
-def test_a_quantity_names_the_section_of_a_file_that_it_follows_from(
-        scale: str, keys: str) -> None:
-    assert keys_of(scale) == keys
 
 
 def test_a_spool_that_is_too_fast_is_refused_by_its_own_section() -> None:
