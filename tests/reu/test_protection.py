@@ -1,22 +1,19 @@
 """Protection alone: levels, delays, hysteresis, latching, reactions."""
 
 from dataclasses import replace
-import math
 
 from hypothesis import given, settings, strategies as st
 from isa_ros.core.conditions import BITS, CONDITIONS, conditions, REACTIONS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.signals import SAMPLE
-from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
 from isa_ros.reu.protection import GONE, request_clear, TAKEN, write_trips
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import protect
 import numpy as np
 import pytest
-from tests.reu.watched import only, PERIOD, RATINGS, READINGS, STROKE, Watched
+from tests.reu.watched import NAMES, only, PERIOD, RATINGS, STROKE, Watched
 
-NAMES = tuple(READINGS)
 EPSILON = 1e-6  # of a level: the readings are sums, exact to 1e-12 of their terms
 
 
@@ -27,12 +24,6 @@ def beyond(name: str, level: float, by: float) -> float:
 
 def rated(name: str, level: float) -> float:
     return level * RATINGS.of(name)
-
-
-def test_every_condition_has_levels_or_a_timeout() -> None:
-    """Keys, bits and readings of this test name the same conditions."""
-    timeouts = {'setpoint_timeout', 'link_lost', 'watchdog'}
-    assert set(levels_of(defaults(Protection))) == set(BITS) - timeouts == set(NAMES)
 
 
 @pytest.mark.parametrize('name', NAMES)
@@ -204,36 +195,6 @@ def test_a_trip_is_the_same_in_plain_python() -> None:
     assert states(protect) == states(protect.py_func)
 
 
-@given(
-    name=st.sampled_from(NAMES), warning=st.floats(0.01, 0.4), trip=st.floats(0.01, 0.4))
-@settings(max_examples=60)
-def test_a_warning_beyond_its_trip_is_refused(name: str, warning: float, trip: float) -> None:
-    """With one line that names both, their values and their unit."""
-    is_above = CONDITIONS[BITS[name]].is_above
-    unit = ' celsius' if name == 'overtemperature' else ''
-    if warning <= trip if is_above else warning >= trip:
-        only(name, warning=warning, trip=trip)
-        return
-    with pytest.raises(ParameterError) as refused:
-        only(name, warning=warning, trip=trip)
-    assert str(refused.value) == (
-        f'{name}.warning = {warning:g}{unit}, must be {"<=" if is_above else ">="} '
-        f'{name}.trip = {trip:g}{unit}')
-
-
-@pytest.mark.parametrize(('levels', 'message'), [
-    ({'delay_ms': -1.0}, 'Overload.delay_ms = -1 ms, must be >= 0 ms'),
-    ({'trip': -0.1}, 'Overload.trip = -0.1, must be >= 0 '),
-    ({'trip': 1.1}, 'Overload.trip = 1.1, must be <= 1 '),
-    ({'trip': math.nan}, 'Overload.trip = nan, must be finite'),
-    ({'reaction': 'explode'}, "Overload.reaction = 'explode', must be one of none, warn, limit"),
-])
-def test_bad_levels_are_refused(levels: dict[str, float], message: str) -> None:
-    with pytest.raises(ParameterError) as refused:
-        only('overload', **levels)
-    assert str(refused.value).startswith(message)
-
-
 def test_a_supply_that_an_emergency_stop_took_is_not_low_until_it_is_back() -> None:
     """It has fallen below the trip at 4.4 MPa and is back beyond the hysteresis, 4.84 MPa."""
     watched = Watched(only('supply_low', 0.1, trip=0.2, delay_ms=0.0, reaction='disable'))
@@ -282,14 +243,6 @@ def test_what_moved_while_a_program_stood_still_is_no_jump() -> None:
     assert watched.own.values[BITS['link_lost']] == 2e-3
 
 
-def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
-    constants = Watched(defaults(Protection)).constants
-    is_watched = np.isfinite(constants.quiet)
-    assert [name for name, k in BITS.items() if not is_watched[k]] == [
-        'setpoint_timeout', 'end_of_stroke', 'link_lost', 'watchdog']
-    assert np.isfinite(Watched(defaults(Protection), 5e-3).constants.trip[BITS['watchdog']])
-
-
 def test_a_trip_keeps_its_cause() -> None:
     """A trip has the value that caused it, also when the quantity is back."""
     watched = Watched(only(
@@ -303,23 +256,6 @@ def test_a_trip_keeps_its_cause() -> None:
     assert watched.own.first == watched.own.trips == watched.own.warnings == 1 << bit
     assert (watched.own.trip_since[bit], watched.own.warning_since[bit]) == (20, 20)
     assert (watched.own.trip_values[bit], watched.own.values[bit]) == (6000.0, 4500.0)
-
-
-@pytest.mark.parametrize(('name', 'refused', 'left'), [
-    ('end_of_stroke', ('hold', 'damp', 'quick_stop', 'disable', 'block'),
-     'none or warn or limit'),
-    ('load_cell_implausible', ('hold', 'damp', 'quick_stop'), 'none or warn or disable or block'),
-    ('encoder_jump', ('hold', 'damp', 'quick_stop'), 'none or warn or disable or block')])
-def test_a_reaction_that_could_not_end_or_uses_what_is_wrong_is_refused(
-        name: str, refused: tuple[str, ...], left: str) -> None:
-    """At the end of the stroke nothing else could be left; a stop needs encoder and load cell."""
-    for reaction in REACTIONS:
-        if reaction in refused:
-            with pytest.raises(ParameterError, match=f'{name}.reaction = {reaction}, must be '
-                                                     f'{left}: '):
-                only(name, reaction=reaction)
-        elif reaction in left:
-            only(name, reaction=reaction)
 
 
 def test_the_sample_names_the_last_trip_its_time_and_its_quantity() -> None:

@@ -156,3 +156,4 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'oscillation': _oscillation,
     'runaway': _runaway,
 }
+NAMES = tuple(READINGS)
