@@ -14,11 +14,6 @@ from .rig import Master, Rig
 LATE = 1 << 13
 
 
-@pytest.fixture
-def rig():
-    return Rig()
-
-
 def test_a_following_error_beyond_window_and_time_is_a_fault(rig):
     master = enabled(rig)
     master.download(0x6065, 0, 20000)

@@ -4,18 +4,13 @@ import pytest
 
 from .master_402 import (
     CSP, CSV, ENABLE, enabled, POSITION, RESET, SHUTDOWN, state, SWITCH_ON)
-from .rig import Master, Rig
+from .rig import Master
 
 PP, PV, HM = 1, 3, 6
 NEW, AT_ONCE, RELATIVE, HALT = 1 << 4, 1 << 5, 1 << 6, 1 << 8
 REACHED, ACKNOWLEDGED, FAILED = 1 << 10, 1 << 12, 1 << 13
 LIMITED = 1 << 11
 UM = 1e-6
-
-
-@pytest.fixture
-def rig():
-    return Rig()
 
 
 def profiled(rig, mode=PP, speed=100_000, acceleration=2_000_000, deceleration=1_000_000):

@@ -10,11 +10,6 @@ from .master_402 import (
 from .rig import Master, Rig
 
 
-@pytest.fixture
-def rig():
-    return Rig()
-
-
 def test_velocity_mode_adds_the_velocity_offset(rig):
     master = enabled(rig, CSV)
     start = master.upload(0x6062)

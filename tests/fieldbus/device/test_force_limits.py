@@ -6,11 +6,6 @@ from ..master_402 import CSP, ENABLE, enabled, IMPEDANCE
 from ..rig import Master, Rig
 
 
-@pytest.fixture
-def rig():
-    return Rig()
-
-
 @pytest.mark.parametrize(('index', 'moves', 'largest'), [
     (0x6072, 20000, 750.0), (0x6072, -20000, -750.0), (0x60E0, 20000, 750.0),
     (0x60E1, -20000, -750.0), (0x60E1, 20000, 2000.0), (0x60E0, -20000, -2000.0)])

@@ -12,11 +12,6 @@ from ..rig import Master, Rig
 KEEPS = 0xFFFFFFFF
 
 
-@pytest.fixture
-def rig():
-    return Rig()
-
-
 def applied(rig):
     row = rig.simulation.applied[0]
     return float(row['stiffness']), float(row['damping'])
