@@ -1,6 +1,6 @@
 """A small recorded run for the bag tests: one actuator, a clock, exact numbers."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 import threading
 import time
@@ -55,6 +55,23 @@ def record(directory: Path, n_ticks: int, changed=None, **options) -> Path:
             fields = (changed or {}).get(tick, {})
             writer.write_tick(tick * STEP_NS, tick, tick_messages(tick, **fields))
     return writer.path
+
+
+def expected(n_ticks: int) -> Iterator[tuple[str, int, bytes]]:
+    """Yield (topic, time, bytes) as they are handed to the writer of ``n_ticks``."""
+    for tick in range(n_ticks):
+        for k, data in tick_messages(tick):
+            yield NAMES[k], tick * STEP_NS, data
+
+
+def files(directory: Path) -> list[Path]:
+    """Return the MCAP files of a bag of less than eleven, in their order."""
+    return sorted(directory.glob('*.mcap'))
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    """Return the content of every file by name."""
+    return {path.name: path.read_bytes() for path in directory.iterdir()}
 
 
 def wait_for_disk(directory: Path, is_there: Callable[[Bag], bool]) -> None:

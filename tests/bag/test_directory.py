@@ -10,14 +10,9 @@ import pytest
 from rosbags.rosbag2 import Writer
 from rosbags.rosbag2.enums import StoragePlugin
 from rosbags.typesys import get_typestore, Stores
-from tests.bag.recorded import PROVENANCE, record, STEP_NS, TOPICS
+from tests.bag.recorded import contents, PROVENANCE, record, STEP_NS, TOPICS
 
 SPLIT = Storage(compression='none', split_mb=0.001)
-
-
-def contents(directory: Path) -> dict[str, bytes]:
-    """Return the content of every file by name."""
-    return {path.name: path.read_bytes() for path in directory.iterdir()}
 
 
 def refusal(directory: Path) -> str:

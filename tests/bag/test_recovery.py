@@ -1,6 +1,5 @@
 """A bag cut short is completed: the bytes of a run that ended there, for every reader."""
 
-from collections.abc import Iterator
 import os
 from pathlib import Path
 
@@ -16,9 +15,9 @@ from mcap.reader import make_reader
 import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
-from tests.bag.recorded import NAMES, record, STEP_NS, tick_messages
+from tests.bag.recorded import contents, expected, files, record, STEP_NS
 from tests.bag.test_checksums import of
-from tests.bag.test_writer import limited_files
+from tests.full_disk import limited_files
 import yaml
 
 CHUNK_TICKS = 50    # instead of 500: a bag of the same parts is written in a tenth of the time
@@ -33,21 +32,6 @@ STORAGES = pytest.mark.parametrize('storage', [
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """End each chunk after `CHUNK_TICKS`."""
     monkeypatch.setattr(part_writer, 'CHUNK_TICKS', CHUNK_TICKS)
-
-
-def expected(n_ticks: int) -> Iterator[tuple[str, int, bytes]]:
-    """Yield (topic, time, bytes) as they were handed to the writer."""
-    for tick in range(n_ticks):
-        for k, data in tick_messages(tick):
-            yield NAMES[k], tick * STEP_NS, data
-
-
-def contents(directory: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in sorted(directory.iterdir())}
-
-
-def last_file(directory: Path) -> Path:
-    return sorted(directory.glob('*.mcap'))[-1]
 
 
 def cut(path: Path, size: int) -> None:
@@ -71,11 +55,11 @@ def test_it_has_the_bytes_of_a_run_that_ended_there(tmp_path: Path, storage: Sto
     record(ended, 2 * CHUNK_TICKS, storage=storage)
     whole = tmp_path / 'whole' / 'rig'
     record(whole, N, storage=storage)
-    last = last_file(whole)
+    last = files(whole)[-1]
     chunks = of(last.read_bytes(), Opcode.CHUNK)
     if storage.split_mb:
         last.unlink()           # the second file says that it goes on
-        last = last_file(whole)
+        last = files(whole)[-1]
         chunks = of(last.read_bytes(), Opcode.CHUNK)
         end, = of(last.read_bytes(), Opcode.METADATA)[-1:]
         places = [end.start, end.start - 100]
@@ -98,7 +82,7 @@ def test_every_reader_opens_it(tmp_path: Path, storage: Storage) -> None:
     """Cut anywhere in the last file: rosbags, the official library, and this package."""
     whole = tmp_path / 'rig'
     record(whole, N, storage=storage)
-    last = last_file(whole)
+    last = files(whole)[-1]
     data = last.read_bytes()
     for number, size in enumerate(range(len(data) - 1, len(data) // 2, -len(data) // 5)):
         last.write_bytes(data[:size])
@@ -110,7 +94,7 @@ def test_every_reader_opens_it(tmp_path: Path, storage: Storage) -> None:
         with AnyReader([out]) as reader:
             assert reader.message_count == len(sent)
         read = []
-        for path in sorted(out.glob('*.mcap')):
+        for path in files(out):
             with path.open('rb') as file:
                 read += [(channel.topic, message.log_time, message.data) for _, channel, message
                          in make_reader(file, validate_crcs=True).iter_messages()]
@@ -127,7 +111,7 @@ def test_a_bag_of_a_later_format_is_completed(
     record(tmp_path / 'rig', N)
     records = Bag(tmp_path / 'rig').provenance_records
     monkeypatch.undo()
-    last = last_file(tmp_path / 'rig')
+    last = files(tmp_path / 'rig')[-1]
     cut(last, last.stat().st_size - 9)
     out = recover(tmp_path / 'rig').directory
     assert Bag(out).is_whole and Bag(out).provenance_records == records
@@ -140,7 +124,7 @@ def test_a_split_bag_without_a_chunk_in_its_last_file_is_completed(
         tmp_path: Path, left: int | None) -> None:
     """The file is missing, empty, or cut in its head: it becomes one without messages."""
     record(tmp_path / 'rig', N, storage=Storage(compression='none', split_mb=SPLIT_MB))
-    last = last_file(tmp_path / 'rig')
+    last = files(tmp_path / 'rig')[-1]
     if left is None:
         last.unlink()
     else:
@@ -170,14 +154,14 @@ def test_in_place_only_the_incomplete_file_and_the_metadata_change(tmp_path: Pat
     record(tmp_path / 'rig', N, storage=Storage(compression='none', split_mb=SPLIT_MB))
     (tmp_path / 'rig' / 'state_7.json').write_text('{}')
     record(tmp_path / 'same' / 'rig', N, storage=Storage(compression='none', split_mb=SPLIT_MB))
-    last = last_file(tmp_path / 'rig')
+    last = files(tmp_path / 'rig')[-1]
     cut(last, last.stat().st_size - 100)    # behind the last chunk: nothing is lost
-    kept = [path.stat().st_ino for path in sorted((tmp_path / 'rig').glob('*.mcap'))[:-1]]
+    kept = [path.stat().st_ino for path in files(tmp_path / 'rig')[:-1]]
     assert main(['recover', str(tmp_path / 'rig'), '--in-place']) == 0
     assert contents(tmp_path / 'rig') == (
         contents(tmp_path / 'same' / 'rig') | {'state_7.json': b'{}'})
     assert [path.stat().st_ino
-            for path in sorted((tmp_path / 'rig').glob('*.mcap'))[:-1]] == kept
+            for path in files(tmp_path / 'rig')[:-1]] == kept
 
 
 def test_a_full_disk_leaves_the_original_in_place(killed: Path) -> None:
@@ -277,16 +261,16 @@ def test_lost_bytes_and_times_of_a_split_bag_are_those_of_its_last_file(
         tmp_path: Path, in_place: bool) -> None:
     """Which has no chunk: it begins at no time, and what was cut off lies in it."""
     record(tmp_path / 'rig', N, storage=Storage(compression='none', split_mb=SPLIT_MB))
-    last = last_file(tmp_path / 'rig')
+    last = files(tmp_path / 'rig')[-1]
     chunk, = of(last.read_bytes(), Opcode.CHUNK)
     cut(last, chunk.start + 777)
     found = recover(tmp_path / 'rig', in_place=in_place)
     assert found.lost_bytes == 777
-    files = yaml.safe_load((found.directory / 'metadata.yaml').read_text())[
+    listed = yaml.safe_load((found.directory / 'metadata.yaml').read_text())[
         'rosbag2_bagfile_information']['files']
-    starts = [file['starting_time']['nanoseconds_since_epoch'] for file in files]
+    starts = [file['starting_time']['nanoseconds_since_epoch'] for file in listed]
     assert starts == [0, CHUNK_TICKS * STEP_NS, NO_START]
-    assert [file['message_count'] for file in files][-1] == 0
+    assert [file['message_count'] for file in listed][-1] == 0
 
 
 def test_in_place_the_new_file_is_on_the_disk_before_it_replaces_the_old_one(

@@ -18,8 +18,8 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from tests.bag.recorded import (
-    NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS, wait_for_disk)
-from tests.bag.test_writer import limited_files
+    expected, files, NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS, wait_for_disk)
+from tests.full_disk import limited_files
 import yaml
 
 N = 1234  # ticks: two full chunks and a part
@@ -45,17 +45,6 @@ def copy(tmp_path):
     directory = tmp_path / 'rig'
     record(directory, N, storage=storage('zstd'))
     return directory
-
-
-def expected():
-    """Yield (topic, time, bytes) as they were handed to the writer."""
-    for tick in range(N):
-        for k, data in tick_messages(tick):
-            yield NAMES[k], tick * STEP_NS, data
-
-
-def files(directory: Path) -> list[Path]:
-    return sorted(directory.glob('*.mcap'))
 
 
 def test_every_file_begins_with_the_tick_after_the_chunk_that_filled_the_last(split):
@@ -84,16 +73,16 @@ def test_a_finished_file_keeps_no_memory_for_messages(tmp_path):
 
 def test_files_are_read_as_one_run(split):
     bag = Bag(split)
-    assert [(m.topic, m.t_ns, m.data) for m in bag.messages()] == list(expected())
+    assert [(m.topic, m.t_ns, m.data) for m in bag.messages()] == list(expected(N))
     assert (bag.start_ns, bag.end_ns, bag.is_whole) == (0, (N - 1) * STEP_NS, True)
-    assert bag.n_messages == len(list(expected()))
+    assert bag.n_messages == len(list(expected(N)))
     assert bag.provenance == PROVENANCE
 
 
 def test_rosbag2_and_any_reader_read_every_message(split):
     with Reader(split) as reader:
         read = [(c.topic, t_ns, bytes(data)) for c, t_ns, data in reader.messages()]
-    assert read == list(expected())
+    assert read == list(expected(N))
     with AnyReader([split]) as reader:
         assert reader.message_count == len(read)
 
@@ -110,7 +99,7 @@ def test_every_file_stands_alone_in_the_official_reader(split):
                 'configuration.yaml', 'scenario.yaml']
         assert sorted(c.topic for c in summary.channels.values()) == NAMES
         assert Bag(path).provenance == PROVENANCE
-    assert read == list(expected())
+    assert read == list(expected(N))
 
 
 def test_chunks_are_compressed_as_asked(tmp_path):

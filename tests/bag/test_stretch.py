@@ -13,7 +13,8 @@ from isa_ros.core.topic import Topic
 from isa_ros.errors import RunError
 from mcap.reader import make_reader
 import pytest
-from tests.bag.recorded import DEADLINE_S, PROVENANCE, record, STEP_NS, tick_messages, TOPICS
+from tests.bag.recorded import (
+    contents, DEADLINE_S, PROVENANCE, record, STEP_NS, tick_messages, TOPICS)
 
 N = 1234    # ticks: two full chunks and a part; at every hundredth another layout
 TEXT = (Topic('/text', 'std_msgs/msg/String'),)
@@ -50,11 +51,6 @@ def record_stretches(
     return directory
 
 
-def files_of(directory: Path) -> dict[str, bytes]:
-    """Return the bytes of the files of a bag."""
-    return {path.name: path.read_bytes() for path in directory.iterdir()}
-
-
 @pytest.mark.parametrize('most, single', [(1, 0), (7, 0), (1000, 0), (13, 17)])
 @pytest.mark.parametrize('storage', [
     PLAIN, Storage(compression='zstd', split_mb=0.0),
@@ -63,8 +59,8 @@ def test_stretches_give_the_files_of_single_ticks(tmp_path, most, single, storag
     """In any number, also with ticks of `write_tick` between them."""
     record(tmp_path / 'one' / 'rig', N, storage=storage)
     found = record_stretches(tmp_path / 'many' / 'rig', most, storage=storage, single=single)
-    expected = files_of(tmp_path / 'one' / 'rig')
-    assert files_of(found) == expected
+    expected = contents(tmp_path / 'one' / 'rig')
+    assert contents(found) == expected
     assert len(expected) == (4 if storage.split_mb else 2)
 
 

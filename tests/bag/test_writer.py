@@ -1,9 +1,8 @@
 """The recorder: its bags in other readers, determinism, loss, and refusals."""
 
-from contextlib import contextmanager, ExitStack
+from contextlib import ExitStack
 import hashlib
 from pathlib import Path
-import resource
 import signal
 import subprocess
 import sys
@@ -20,7 +19,8 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from tests.bag.recorded import (
-    NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS, wait_for_disk)
+    expected, NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS, wait_for_disk)
+from tests.full_disk import limited_files
 import yaml
 
 N = 1234  # ticks: two full chunks and a part
@@ -32,17 +32,10 @@ def mcap(tmp_path_factory):
     return record(tmp_path_factory.mktemp('recorded') / 'rig', N)
 
 
-def expected():
-    """Yield (topic, time, bytes) as they were handed to the writer."""
-    for tick in range(N):
-        for k, data in tick_messages(tick):
-            yield NAMES[k], tick * STEP_NS, data
-
-
 def test_rosbag2_reader_reads_every_message(mcap):
     with Reader(mcap.parent) as reader:
         read = [(c.topic, t_ns, bytes(data)) for c, t_ns, data in reader.messages()]
-    assert read == list(expected())
+    assert read == list(expected(N))
 
 
 def test_any_reader_decodes_simulation_time(mcap):
@@ -59,7 +52,7 @@ def test_mcap_library_reads_it_in_order_with_valid_checksums(mcap):
         read = [
             (channel.topic, message.log_time, message.data)
             for _, channel, message in make_reader(file, validate_crcs=True).iter_messages()]
-    assert read == list(expected())
+    assert read == list(expected(N))
 
 
 def test_data_section_checksum_holds(mcap):
@@ -207,19 +200,6 @@ def test_kill_leaves_all_but_the_last_two_chunks(tmp_path):
     assert [tick.sequence for tick in ticks] == list(range(len(ticks)))
     assert all(len(tick.messages) == len(tick_messages(tick.sequence)) for tick in ticks)
     assert bag.provenance == PROVENANCE
-
-
-@contextmanager
-def limited_files(size):
-    """Bound the size of files, as a full disk does; for the duration of the block only."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-        signal.signal(signal.SIGXFSZ, handler)
 
 
 def test_full_disk_is_a_run_error_and_leaves_a_readable_bag(tmp_path):

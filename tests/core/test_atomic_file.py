@@ -7,7 +7,7 @@ from pathlib import Path
 from isa_ros.core import atomic_file
 from isa_ros.core.atomic_file import replace_file
 import pytest
-from tests.bag.test_writer import limited_files
+from tests.full_disk import limited_files
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError
 import numpy as np
 import pytest
-from tests.bag.test_writer import limited_files
+from tests.full_disk import limited_files
 
 STATE = RunState(tick=7, load=b'load', participants=[b'haa', b''],
                  requests=np.zeros(2, COMMAND).tobytes())
