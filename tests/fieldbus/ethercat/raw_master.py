@@ -217,3 +217,17 @@ class RawMaster:
     def upload(self, index: int, subindex: int, flags: int = 0) -> bytes:
         """Send an initiate upload; return the SDO of the answer without the service."""
         return self.ask(struct.pack('<HBHBI', 0x2000, 0x40 | flags, index, subindex, 0))[2:]
+
+
+def in_state(state: int, *toys: Toy) -> RawMaster:
+    """Return the master of slaves that it has brought into a state."""
+    master = RawMaster(*toys)
+    if state > INIT:
+        master.bring_up(state)
+    return master
+
+
+def abort_of(answer: bytes) -> int:
+    """Return the code of an SDO abort."""
+    assert answer[2] == 0x80
+    return struct.unpack_from('<I', answer, 6)[0]

@@ -4,17 +4,9 @@ import struct
 
 from isa_ros.fieldbus.ethercat.al_codes import AL_CODES
 import pytest
-from tests.fieldbus.ethercat.raw_master import INIT, OP, PREOP, RawMaster, SAFEOP
+from tests.fieldbus.ethercat.raw_master import in_state, INIT, OP, PREOP, RawMaster, SAFEOP
 
 BOOT, ERROR, ACKNOWLEDGE = 3, 0x10, 0x10
-
-
-def in_state(state: int) -> RawMaster:
-    """Return a slave in a state."""
-    master = RawMaster()
-    if state > INIT:
-        master.bring_up(state)
-    return master
 
 
 @pytest.mark.parametrize('path', [

@@ -6,26 +6,12 @@ import struct
 import pytest
 from tests.fieldbus.ethercat.namespace import run
 from tests.fieldbus.ethercat.raw_master import (
-    at, BRD, FPRD, frame_of, INIT, LRW, OP, PREOP, RawMaster, SAFEOP, Sent)
+    abort_of, at, BRD, FPRD, frame_of, in_state, INIT, LRW, OP, PREOP, SAFEOP, Sent)
 from tests.fieldbus.ethercat.seen import row, table
 from tests.fieldbus.toys import Toy
 
 PAGE = Path(__file__).parents[3] / 'docs' / 'ethercat.md'
 ERROR, ACKNOWLEDGE = 0x10, 0x10
-
-
-def in_state(state: int, *toys: Toy) -> RawMaster:
-    """Return slaves in a state."""
-    master = RawMaster(*toys)
-    if state > INIT:
-        master.bring_up(state)
-    return master
-
-
-def abort_of(answer: bytes) -> int:
-    """Return the code of an SDO abort."""
-    assert answer[2] == 0x80
-    return struct.unpack_from('<I', answer, 6)[0]
 
 
 def upload(index: int, subindex: int = 0) -> bytes:
