@@ -9,7 +9,7 @@ from isa_ros.replay.replay import recorded_inputs, replay
 from isa_ros.scripting.run import load
 import pytest
 from tests.ros.started import bringup, RIG, rig_until_stopped
-from tests.ros.test_parameters import Tuner
+from tests.ros.tuner import Tuner
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 FAULTS = find('device_faults.yaml', SCENARIOS)

@@ -2,7 +2,6 @@
 
 from itertools import cycle
 from pathlib import Path
-from typing import Any
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
@@ -15,83 +14,17 @@ from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
+from rcl_interfaces.msg import ParameterEvent, ParameterType
 from rcl_interfaces.srv import (
     DescribeParameters, GetParameters, SetParameters, SetParametersAtomically)
-from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 from sensor_msgs.msg import JointState
-from tests.ros.spinning import Spinning
-from tests.ros.started import (
-    actuator, coordinator, RIG, rig_until_stopped, without_compilation)
+from tests.ros.started import actuator, coordinator, RIG, rig_until_stopped, without_compilation
+from tests.ros.tuner import double, nanoseconds, string, Tuner
 
 pytestmark = pytest.mark.ros
 TUNED, APPLIED = 0, 1  # places in the sorted topics
 KP = 2.5e-5  # A/Nm; the preset has 4e-5
-
-
-class Tuner:
-    """A user's node for tuning one actuator: the standard services, its state, two echoes."""
-
-    def __init__(self, node: Node, name: str) -> None:
-        self.name = name
-        self.node = node
-        self.events: list[ParameterEvent] = []
-        self.setpoints: list[JointState] = []
-        self.state: list[JointState] = []
-        node.create_subscription(JointState, f'/{name}/joint_states', self.state.append, 10)
-        node.create_subscription(
-            ParameterEvent, f'/{name}/applied_parameters', self.events.append, 10)
-        node.create_subscription(
-            JointState, f'/{name}/applied_setpoint', self.setpoints.append, 10)
-        self._spinning = Spinning(node)
-        self.wait_for = self._spinning.wait_for
-        self._clients = {
-            service: node.create_client(service, f'/{name}/{topic}') for service, topic in (
-                (SetParameters, 'set_parameters'), (GetParameters, 'get_parameters'),
-                (SetParametersAtomically, 'set_parameters_atomically'),
-                (DescribeParameters, 'describe_parameters'))}
-
-    def connect(self) -> None:
-        """Wait until the services are available and the state arrives."""
-        self.wait_for(
-            lambda: self.state and all(
-                client.service_is_ready() for client in self._clients.values()), 'connection')
-
-    def let_run(self) -> None:
-        """Wait for 0.1 s of simulation, longer than the queue of the state."""
-        begin = _ns(self.state[-1].header.stamp)
-        self.wait_for(
-            lambda: _ns(self.state[-1].header.stamp) - begin > 100_000_000, 'simulated time')
-
-    def call(self, request: Any) -> Any:
-        """Return the answer to a request."""
-        service = next(s for s in self._clients if isinstance(request, s.Request))
-        future = self._clients[service].call_async(request)
-        self.wait_for(future.done, 'the answer')
-        return future.result()
-
-    def tune(self, name: str, value: float) -> Any:
-        """Set one parameter and return the result."""
-        return self.call(SetParameters.Request(parameters=[_double(name, value)])).results[0]
-
-    def get(self, *names: str) -> list[float]:
-        """Return the values of parameters."""
-        return [v.double_value for v in self.call(GetParameters.Request(names=names)).values]
-
-
-def _ns(stamp: Any) -> int:
-    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
-
-
-def _double(name: str, value: float) -> Parameter:
-    return Parameter(name=name, value=ParameterValue(
-        type=ParameterType.PARAMETER_DOUBLE, double_value=value))
-
-
-def _text(name: str, value: str) -> Parameter:
-    return Parameter(name=name, value=ParameterValue(
-        type=ParameterType.PARAMETER_STRING, string_value=value))
 
 
 def recorded(bag: Path, name: str) -> list[tuple[int, int, dict[str, float]]]:
@@ -100,7 +33,7 @@ def recorded(bag: Path, name: str) -> list[tuple[int, int, dict[str, float]]]:
     for message in Bag(bag).messages():
         if message.topic == f'/{name}/applied_parameters':
             stamp = decode(message.data, ParameterEvent).stamp
-            found.append((message.sequence, _ns(stamp), tuned_values(message.data, name)))
+            found.append((message.sequence, nanoseconds(stamp), tuned_values(message.data, name)))
     return found
 
 
@@ -146,7 +79,7 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
         assert words.additional_constraints == (
             'one of none, warn, hold, damp, quick_stop, disable, block')
         refused = tuner.call(SetParameters.Request(
-            parameters=[_text('model', 'isa_v2')])).results[0]
+            parameters=[string('model', 'isa_v2')])).results[0]
         assert not refused.successful and 'read-only' in refused.reason
 
 
@@ -164,19 +97,19 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
             result = tuner.tune(name, value)
             assert not result.successful and reason in result.reason
         result = tuner.call(SetParametersAtomically.Request(parameters=[
-            _double('force.kp', 1e-7), _double('force.limit', 1.0)])).result
+            double('force.kp', 1e-7), double('force.limit', 1.0)])).result
         assert not result.successful
         result = tuner.call(SetParametersAtomically.Request(parameters=[
-            _double('force.kp', 1e-7), _text('mode', 'pressure')])).result
+            double('force.kp', 1e-7), string('mode', 'pressure')])).result
         assert not result.successful and 'pressure' in result.reason
         assert tuner.get('force.kp', 'force.limit') == before
         reaction = 'reu.protection.supply_low.reaction'
-        result = tuner.call(SetParameters.Request(parameters=[_text(reaction, 'limit')]))
+        result = tuner.call(SetParameters.Request(parameters=[string(reaction, 'limit')]))
         assert not result.results[0].successful and 'must be one of none' in (
             result.results[0].reason)
         assert not tuner.events
         assert tuner.call(SetParameters.Request(
-            parameters=[_text(reaction, 'warn')])).results[0].successful
+            parameters=[string(reaction, 'warn')])).results[0].successful
         found, = tuner.call(GetParameters.Request(names=[reaction])).values
         assert found.string_value == 'warn'
     assert 'Traceback' not in process.errors
@@ -334,7 +267,7 @@ def test_a_lone_actuator_begins_with_its_override_and_says_what_changed(observer
         tuner.wait_for(
             lambda: tuner.tune('force.kp', next(values)).successful and tuner.events, 'the echo')
     event = tuner.events[-1]
-    assert (event.node, _ns(event.stamp) % 1_000_000) == ('/knee', 0)
+    assert (event.node, nanoseconds(event.stamp) % 1_000_000) == ('/knee', 0)
     changed, = event.changed_parameters
     # 7e-8, in force from tick 0, for subscribers that match by then
     assert changed.name == 'force.kp' and changed.value.double_value in (5e-8, 6e-8, 7e-8)
