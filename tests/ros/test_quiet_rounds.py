@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 from tests.ros.lockstep.participants import NAMES
 from tests.ros.test_steady_ticks import driven, Robot
-from tests.tick.test_quiet import advance
+from tests.tick.quietly import advance
 
 pytestmark = [pytest.mark.ros, pytest.mark.skipif(
     not IS_COMPILED, reason='quiet ticks are machine code')]

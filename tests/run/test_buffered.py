@@ -17,7 +17,7 @@ from isa_ros.tick.quiet import QuietTicks
 from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 import pytest
-from tests.tick.test_quiet import advance
+from tests.tick.quietly import advance
 
 CALLS = (1, 3, 20, 100, 10**6)
 BLOCK = np.arange(40, dtype=np.uint8)

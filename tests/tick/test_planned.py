@@ -6,7 +6,7 @@ from isa_ros.tick.planned import MOST, PlannedCommands
 from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
-from tests.tick.test_quiet import begun
+from tests.tick.quietly import begun
 
 
 class Motion:
