@@ -47,6 +47,8 @@ class Coordinator:
         self.is_paused = is_paused
         self.is_reset = False
         """Whether the run ended by a reset, to start again at t = 0."""
+        self.restarts_paused: bool | None = None
+        """Whether it then waits there; None: as the options of the run say."""
         self.save: Callable[[], RunState] = loop.save
         self.add_event: Callable[[str], None] = loop.add_event
 
@@ -64,6 +66,11 @@ class Coordinator:
     def t_ns(self) -> int:
         """Return the simulated time reached."""
         return self._loop.t_ns
+
+    @property
+    def step_ns(self) -> int:
+        """Return the length of a tick."""
+        return self._loop.step_ns
 
     def run(self, state: RunState | None = None) -> None:
         """
@@ -150,10 +157,15 @@ class Coordinator:
         if self._loop.stops is not None:
             self._loop.stops.request(is_open, self.rows.samples)
 
-    def reset(self) -> None:
-        """End this run, to start again at t = 0 with a new bag."""
+    def reset(self, is_paused: bool | None = None) -> None:
+        """
+        End this run, to start again at t = 0 with a new bag.
+
+        ``is_paused``: whether the new run waits there; None: as the options say.
+        """
         self.add_event('reset')
         self.is_reset = True
+        self.restarts_paused = is_paused
 
     def set_real_time_factor(self, factor: float) -> None:
         """

@@ -188,6 +188,7 @@ def record(
     published = outlets(packer.surroundings)
     thinning = Thinning(run.record, packer.topics)
     n_ticks, state, out = session.scenario.n_ticks, session.state, session.out
+    is_paused = session.request.is_paused
     if state is not None:
         packer.rare.announce()
     trip_log = TripLog([(own.name, own.sheet.is_rotary) for own in run.actuators])
@@ -216,11 +217,13 @@ def record(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),
                     should_stop=should_stop, requests=requests,
-                    is_paused=session.request.is_paused)
+                    is_paused=is_paused)
                 coordinator.run(state)
             if not coordinator.is_reset:
                 break
             out, state = _unused(session.out), None
+            is_paused = (session.request.is_paused if coordinator.restarts_paused is None
+                         else coordinator.restarts_paused)
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
 

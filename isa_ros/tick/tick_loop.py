@@ -67,6 +67,11 @@ class TickLoop:
         """Return the simulated time reached."""
         return self.ticks * self._step_ns
 
+    @property
+    def step_ns(self) -> int:
+        """Return the length of a tick."""
+        return self._step_ns
+
     def join(self) -> None:
         """Put all at t = 0; tuned values stay. Raises as `Transport.join`."""
         self.ticks = 0

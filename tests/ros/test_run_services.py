@@ -18,7 +18,7 @@ class Run:
     """Stands in for a `Coordinator` between two ticks; each request may raise."""
 
     t_ns = ticks = 0
-    is_paused = False
+    is_paused = is_reset = False
     error: IsaError | None = None
 
     def _maybe_raise(self, *_: object) -> None:
@@ -42,15 +42,27 @@ class Services:
 
     def call(self, name: str) -> Trigger.Response:
         """Return the answer to a call; what ends the run is raised, as the run would."""
+        called = self.request(name)
+        self.wait_for(called, name)
+        return called.result()
+
+    def request(self, name: str) -> Any:
+        """Send a request and return its future."""
         client = self._user.create_client(Trigger, f'/coordinator/{name}')
         self._spinning.wait_for(client.service_is_ready, name)
-        called = client.call_async(Trigger.Request())
+        return client.call_async(Trigger.Request())
 
+    def serve(self) -> None:
+        """Look once at what has arrived, after the time between two looks at services."""
+        self._spinning.spin_once()
+        self._services.serve(self.run)
+
+    def wait_for(self, called: Any, name: str) -> None:
+        """Serve until a request is answered."""
         def is_answered() -> bool:
             self._services.serve(self.run)
             return called.done()
         self._spinning.wait_for(is_answered, f'the answer of {name}')
-        return called.result()
 
 
 @pytest.fixture
@@ -89,3 +101,31 @@ def test_an_error_that_ends_the_run_ends_it(services, name, error):
     with pytest.raises(type(error)) as raised:
         services.call(name)
     assert raised.value is error
+
+
+def test_requests_behind_a_reset_are_those_of_the_next_run(services):
+    """The run that has ended would answer them, and none of it would come true."""
+    done: list[str] = []
+    services.run.reset = lambda: setattr(services.run, 'is_reset', True)
+    services.run.step = lambda count: done.append('a step of the run before')
+    assert services.call('reset').success
+    client = services.request('step')
+    for _ in range(20):
+        services.serve()
+    assert not done and not client.done()
+    services.run = Run()
+    services.wait_for(client, 'step')
+    assert client.result().success and not done
+
+
+def test_without_the_package_the_standard_services_are_missing(observer, monkeypatch):
+    """It is never required: the others are there, and nothing of it is imported."""
+    from isa_ros.nodes.coordinator import services as module
+    monkeypatch.setattr(module, 'is_installed', lambda package: False)
+    node = Node('coordinator', context=observer.context, enable_rosout=False,
+                start_parameter_services=False)
+    RunServices(node, 0.0, lambda run: '')
+    names = {own.srv_name for own in node.services}
+    assert {'~/pause', '~/step', '~/reset', '~/save', 'emergency_stop'} <= names
+    assert not any('simulation' in name or 'simulator' in name for name in names)
+    node.destroy_node()

@@ -82,3 +82,28 @@ def test_a_state_saved_after_a_reset_lies_in_the_bag_of_that_run(tmp_path: Path)
     second = tmp_path / 'bag_2'
     assert saved == [str(second / 'state_2.json')] and Path(saved[0]).exists()
     assert (Bag(tmp_path / 'bag').end_ns, Bag(second).end_ns) == (3_000_000, 5_000_000)
+
+
+@pytest.mark.parametrize(('option', 'given', 'expected'), [
+    (False, None, False), (False, True, True), (True, None, True), (True, False, False)])
+def test_a_reset_begins_as_its_request_says_or_else_as_the_options(
+        tmp_path: Path, option: bool, given: bool | None, expected: bool):
+    """Of the run after it alone: the one after a second reset is as the options say."""
+    session = prepare(Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
+                              duration_s=0.002, real_time_factor=1.0, is_paused=option))
+    begun: list[Coordinator] = []
+    paused: list[bool] = []
+
+    def serve(coordinator: Coordinator) -> None:
+        if coordinator in begun:
+            return
+        begun.append(coordinator)
+        paused.append(coordinator.is_paused)
+        if len(begun) < 3:
+            coordinator.reset(given if len(begun) == 1 else None)
+        else:
+            coordinator.pause(False)
+    surroundings = surroundings_of(session.run)
+    transport = InProcess(group_of(session.run), surroundings.starts())
+    record(session, transport, surroundings, lambda topics: Outlets(), None, lambda: False, serve)
+    assert paused == [option, expected, option]

@@ -8,6 +8,7 @@ from pathlib import Path
 from isa_ros.cli.doctor.finding import Finding, Verdict
 from isa_ros.errors import ConfigError
 from isa_ros.processes.domain_id import domain_id, DOMAIN_VARIABLE
+from msg_adapters.optional import is_installed, OPTIONAL
 
 TRIED = 'rmw_fastrtps_cpp'
 """The middleware with which isa_ros is tested."""
@@ -28,12 +29,21 @@ def middleware(environment: Mapping[str, str] = os.environ) -> Iterator[Finding]
         distribution = environment.get('ROS_DISTRO', 'from wheels')
         yield Finding(_GROUP, 'rclpy', f'{distribution}, {Path(found.origin).parents[1]}')
         yield _rmw()
+        yield from optional()
     yield _domain(environment)
     reach = environment.get(_RANGE, '')
     yield Finding(_GROUP, 'discovery', reach or 'this host (set by isa_ros)') if (
         reach != 'OFF') else Finding(
             _GROUP, 'discovery', 'OFF', Verdict.PROBLEM,
             f'no process finds another: set {_RANGE} to LOCALHOST')
+
+
+def optional() -> Iterator[Finding]:
+    """Yield which message packages that nodes may use are there."""
+    for package, purpose in OPTIONAL.items():
+        yield Finding(_GROUP, package, 'installed') if is_installed(package) else Finding(
+            _GROUP, package, 'not installed', Verdict.NOTE,
+            f'only for {purpose}: apt install ros-jazzy-{package.replace("_", "-")}')
 
 
 def _rmw() -> Finding:

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from isa_ros.errors import ConfigError, IsaError
+from isa_ros.errors import IsaError
+from isa_ros.nodes.coordinator.attempts import attempted, LARGEST_STEP
 from isa_ros.nodes.coordinator.joint_commands import JointCommands
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.middleware.acceptance import Acceptance
@@ -13,14 +14,15 @@ from isa_ros.nodes.middleware.parameters import accept_integers, declare
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.nodes.middleware.servers import DirectServer
 from isa_ros.run.coordinator import Coordinator
+from msg_adapters.optional import is_installed, SIMULATION
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.service import Service
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
 STEP_COUNT = 'step_count'
-LARGEST_STEP = 1_000_000_000
 REAL_TIME_FACTOR = 'real_time_factor'
 
 Save = Callable[[Coordinator], str]
@@ -66,10 +68,19 @@ class RunServices:
             node.create_service(Trigger, '~/step', self._on_step),
             node.create_service(Trigger, '~/reset', self._on_reset),
             node.create_service(Trigger, '~/save', self._on_save),
-            node.create_service(SetBool, 'emergency_stop', self._on_emergency_stop)]
+            node.create_service(SetBool, 'emergency_stop', self._on_emergency_stop),
+            *self._standard_services()]
         parameters = open_parameter_services(node)
         self._server = DirectServer(
-            node.get_logger(), [] if joints is None else joints.subscriptions, own, parameters)
+            node.get_logger(), [] if joints is None else joints.subscriptions, own, parameters,
+            lambda: self._run.is_reset)
+
+    def _standard_services(self) -> list[Service]:
+        """Create those of simulation_interfaces, if it is installed."""
+        if not is_installed(SIMULATION):
+            return []
+        from isa_ros.nodes.coordinator.simulation_services import SimulationServices
+        return SimulationServices(self._node, lambda: self._run, self._acceptance).services
 
     def serve(self, coordinator: Coordinator) -> None:
         """Answer all requests since the last call."""
@@ -103,14 +114,7 @@ class RunServices:
         return self._answer(response, lambda: f'saved to {self._save(self._run)}')
 
     def _answer(self, response: Any, work: Callable[[], str]) -> Any:
-        try:
-            response.message = work()
-            response.success = True
-        except IsaError as error:
-            if error.exit_code != IsaError.exit_code:  # the run itself has failed
-                raise
-            response.message = str(error)
-            response.success = False
+        response.success, response.message = attempted(work)
         return response
 
     def _pause(self, is_paused: bool) -> str:
@@ -128,8 +132,8 @@ class RunServices:
         return f'{self._run.ticks - before} ticks to {self._instant()}'
 
     def _reset(self) -> str:
-        if self._acceptance is not None and not self._acceptance.is_open:
-            raise ConfigError(self._acceptance.reason)
+        if self._acceptance is not None:
+            self._acceptance.refuse_closed()
         instant = self._instant()
         self._run.reset()
         return f'reset at {instant}, starts again at t = 0'

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
+from isa_ros.errors import ConfigError
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -33,6 +34,11 @@ class Acceptance:
             self._node.get_logger().warning(
                 f'setpoint rejected: {self.reason}', throttle_duration_sec=WARNING_PERIOD_S)
         return self.is_open
+
+    def refuse_closed(self) -> None:
+        """Raise `ConfigError` with the reason where only the scenario commands."""
+        if not self.is_open:
+            raise ConfigError(self.reason)
 
     def guard_parameters(self, free: Collection[str] = ()) -> None:
         """

@@ -5,7 +5,7 @@ They are taken directly from rclpy's semi-private handles; with a version of rcl
 a slightly slower `EventsExecutor` is used.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import time
 from typing import Any, Protocol
 
@@ -40,12 +40,17 @@ class Server(Protocol):
 
 
 class DirectServer:
-    """Takes messages and requests from the handles, in the order of the arguments."""
+    """
+    Takes messages and requests from the handles, in the order of the arguments.
+
+    ``is_over``: whether further requests wait for another call, as after one that ends a run.
+    """
 
     def __init__(
             self, log: RcutilsLogger, subscriptions: Sequence[Subscription],
-            services: Sequence[Service], seldom: Sequence[Service] = ()) -> None:
-        self._log = log
+            services: Sequence[Service], seldom: Sequence[Service] = (),
+            is_over: Callable[[], bool] = lambda: False) -> None:
+        self._log, self._is_over = log, is_over
         self._subscriptions: list[Any] = [
             (s.handle.take_message, s.msg_type, s) for s in subscriptions]
         self._services, self._seldom = _taken(services), _taken(seldom)
@@ -78,7 +83,7 @@ class DirectServer:
 
     def _serve(self, services: Sequence[Any]) -> None:
         for take_request, service_type, service in services:
-            while True:
+            while not self._is_over():
                 try:
                     request, header = take_request(service_type.Request)
                 except _NOT_OF_ITS_TYPE:

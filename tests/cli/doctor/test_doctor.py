@@ -84,6 +84,19 @@ def test_without_ros_nodes_are_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found['ROS_DOMAIN_ID'].found == '0'
 
 
+def test_message_packages_that_nodes_may_use_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip('rclpy')
+    monkeypatch.setattr(middleware, 'is_installed', lambda name: True)
+    there = by_name(middleware.middleware({}))['simulation_interfaces']
+    assert there == Finding('ROS', 'simulation_interfaces', 'installed')
+    monkeypatch.setattr(middleware, 'is_installed', lambda name: False)
+    found = by_name(middleware.middleware({}))
+    missing = found['simulation_interfaces']
+    assert (missing.found, missing.verdict) == ('not installed', Verdict.NOTE)
+    assert missing.advice == ('only for the standard services that pause, step and reset a run: '
+                              'apt install ros-jazzy-simulation-interfaces')
+
+
 def test_discovery_that_is_off_is_a_problem() -> None:
     variable = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
     for value, verdict in (('OFF', Verdict.PROBLEM), ('SUBNET', Verdict.GOOD)):
