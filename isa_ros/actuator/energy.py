@@ -49,14 +49,17 @@ def add_energies(reply, port, feed, energies, elastic, seconds, sample):
 
 
 @kernel
-def take_heat(seconds, reply, energies, thermal, state):
+def take_heat(seconds, reply, feed, energies, thermal, state):
     """
     Advance a `THERMAL_STATE` over a tick of ``seconds`` with its `ENERGIES` and volumes  (T4, T5).
 
-    Oil flows in from the supply, and from the return where that refills a chamber.
+    Oil flows in from the supply, and from the return where that refills a chamber, with the
+    temperature of ``feed``, its `SUPPLY_PORT`, if that has one  (T10). Return the heat that oil
+    took along, J.
     """
     oil = energies.leakage + energies.throttling + energies.cross_port + energies.relief
     body = energies.friction + energies.damping + state.coil
     state.coil = 0.0
     inflow = max(0.0, reply.supply_volume) + max(0.0, -reply.return_volume)
-    heat(seconds, oil, body, inflow, thermal, state)
+    supply = feed.celsius if feed.is_warm > 0.0 else thermal.supply
+    return heat(seconds, oil, body, inflow, supply, thermal, state)

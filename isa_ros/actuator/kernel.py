@@ -187,8 +187,10 @@ def tick_row(first_step, steps, port, feed, actuator, continuous, rates, y, k, r
                  stored_elastically(state, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
     if actuator.plant.thermal.is_on:
-        take_heat(steps * PLANT_STEP, reply, state.totals.energies, actuator.plant.thermal,
-                  thermal)
+        carried = take_heat(steps * PLANT_STEP, reply, feed, state.totals.energies,
+                            actuator.plant.thermal, thermal)
+        if feed.is_warm > 0.0:
+            fed.heat = carried
     if actuator.reu.is_frozen == 0.0:
         thermal.sensed = read_temperature(
             first_step + steps, thermal.oil, actuator.noise_key,

@@ -1,20 +1,25 @@
 """Creates the actuators of a run and their surroundings from its configuration."""
 
 from collections.abc import Mapping, Sequence
+import math
 from types import MappingProxyType
 
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.actuator.timing import Timing
+from isa_ros.config.runs.actuator_config import ActuatorConfig
 from isa_ros.config.runs.body_config import BodyFactory, Made
 from isa_ros.config.runs.external_config import at_rest
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.signals import START
-from isa_ros.loads.sheets import static_force
+from isa_ros.loads.sheets import linearised, static_force
+from isa_ros.plant.linearised import LoadSide
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.surroundings.circuits.circuit import Fed
+from isa_ros.plant.step_limits import coldest_followed
+from isa_ros.surroundings.circuits.fed import Fed
+from isa_ros.surroundings.circuits.warmth import COLDEST
 from isa_ros.surroundings.feeding import SupplyCircuit
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
@@ -86,8 +91,16 @@ def _fed(run: RunConfig, supply: SupplyConfig, plants: Sequence[np.record]) -> t
         slope = 0.0
         for row in own:
             slope += largest_flow_slope(plants[row].valve, supply.span)
-        found.append(Fed(place, slope, tuple(own)))
+        heated = [row for row in own if supply.is_warm and plants[row].thermal.is_on]
+        found.append(Fed(place, slope, tuple(own), tuple(heated), max((
+            _coldest(run.actuators[row], plants[row]) for row in heated), default=-math.inf)))
     return tuple(found)
+
+
+def _coldest(actuator: ActuatorConfig, plant: np.record) -> float:
+    """Return the least temperature of oil that an actuator's steps can follow, celsius."""
+    load = LoadSide() if actuator.load is None else LoadSide(*linearised(actuator.load))
+    return coldest_followed(plant, load, COLDEST)
 
 
 def surroundings_in_form(run: RunConfig) -> Surroundings:

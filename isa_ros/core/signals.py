@@ -155,12 +155,15 @@ SUPPLY_PORT = np.dtype([
     ('slope', '<f8'),            # by how much it falls with the pressure, m3/s/Pa
     ('share', '<f8'),            # N: dq/dP of all actuators over that of this one
     ('flow', '<f8'),             # what this one drew last, m3/s
+    ('is_warm', '<f8'),          # 1: the supply's oil has the temperature of a tank
+    ('celsius', '<f8'),          # that temperature
 ])
-"""Supply's port, supply to actuator, one row per actuator and tick (equation C15)."""
+"""Supply's port, supply to actuator, one row per actuator and tick (equations C15, T10)."""
 
 SUPPLY_REPLY = np.dtype([
     ('flow', '<f8'),             # drawn at the end of the tick, m3/s
     ('conductance', '<f8'),      # dq/dP of its valve there, m3/s/Pa
     ('paid', '<f8'),             # energy of the oil drawn in the tick, J
+    ('heat', '<f8'),             # that its oil took along to the supply in the tick, J
 ])
 """Supply's port, actuator to supply, one row per actuator and tick; zeros without a port."""

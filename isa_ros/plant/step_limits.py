@@ -23,6 +23,7 @@ _FACTORS = 1e9      # a parameter is looked for between a value and that many ti
 _HALVINGS = 60
 _NAMED = 5          # parameters in one message
 _SLOWER = 0.9           # half of a parameter that makes the plant fast leaves less of its rate
+_KELVIN = 0.01      # within which a least temperature is found
 _HOTTEST = 120.0    # celsius: beyond it seals fail, and mineral oil decays
 
 
@@ -79,6 +80,26 @@ def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
             warmed = plant.copy()
             warm(celsius, warmed)
             _refuse(warmed, sheet, load, f' with oil at {celsius:g} celsius')
+
+
+def coldest_followed(plant: np.record, load: LoadSide, least: float) -> float:
+    """
+    Return the least temperature of its oil, from ``least`` celsius on, that the step can follow.
+
+    ``plant`` is a `PLANT` with a temperature of its own, which the step follows at the values of
+    its sheet. -inf: it follows all.
+    """
+    def follows(celsius: float) -> bool:
+        warmed = plant.copy()
+        warm(celsius, warmed)
+        return is_followed(warmed, load)
+    if follows(least):
+        return -math.inf
+    cold, enough = least, coldest(plant.thermal)
+    while enough - cold > _KELVIN:
+        middle = 0.5 * (cold + enough)
+        cold, enough = (cold, middle) if follows(middle) else (middle, enough)
+    return float(enough)
 
 
 def _refuse_lags(plant: np.record) -> None:

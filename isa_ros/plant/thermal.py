@@ -119,10 +119,12 @@ def warm(celsius, plant):
 
 
 @kernel
-def heat(h, oil_heat, body_heat, inflow, thermal, state):
+def heat(h, oil_heat, body_heat, inflow, supply, thermal, state):
     """
     Advance the temperatures by ``h`` s: losses in J, oil that flows in in m3  (T4, T5, T6).
 
+    ``supply`` is the temperature of the oil that flows in, celsius. Return the heat that the oil
+    which flowed through took along, J.
     The change is h phi_1(h A) f and the integral of the temperatures h x + h^2 phi_2(h A) f, f the
     rates at the start and A their matrix; both eigenvalues of A are real and not positive, and
     they differ because ``oil_to_body`` is positive.
@@ -131,7 +133,7 @@ def heat(h, oil_heat, body_heat, inflow, thermal, state):
     inner, outer = thermal.oil_to_body, thermal.body_to_air
     c_oil, c_body = thermal.oil_capacity, thermal.body_capacity
     oil, body = state.oil, state.body
-    f_oil = (oil_heat / h + through * (thermal.supply - oil) + inner * (body - oil)) / c_oil
+    f_oil = (oil_heat / h + through * (supply - oil) + inner * (body - oil)) / c_oil
     f_body = (body_heat / h + inner * (oil - body) + outer * (thermal.ambient - body)) / c_body
 
     a, d = (through + inner) / c_oil, (inner + outer) / c_body
@@ -150,5 +152,7 @@ def heat(h, oil_heat, body_heat, inflow, thermal, state):
     mean_oil = oil + h * (phi_2(h * slow) * s_oil + phi_2(h * fast) * q_oil)
     mean_body = body + h * (phi_2(h * slow) * s_body + phi_2(h * fast) * q_body)
     state.heat += oil_heat + body_heat
-    state.to_oil += h * through * (mean_oil - thermal.supply)
+    carried = h * through * (mean_oil - supply)
+    state.to_oil += carried
     state.to_air += h * outer * (mean_body - thermal.ambient)
+    return carried

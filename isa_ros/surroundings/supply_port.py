@@ -16,9 +16,12 @@ from isa_ros.core.kernel import kernel_function
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import Records, SUPPLY_REPLY
 import numpy as np
+from numpy.typing import NDArray
 
 PORT_STEPS = 4.0
 """Shortest time constant of a node behind wide-open valves, in plant steps  (C16)."""
+ANSWER = np.dtype(SUPPLY_REPLY.descr[:-1])
+"""What a saved state has of a `SUPPLY_REPLY`: the heat is used up in its tick."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +60,11 @@ class PortedSupply(Protocol):
 
     def nodes(self) -> list[FedNode]:
         """Return its nodes at the start of the next tick."""
+        ...
+
+    @property
+    def oil_celsius(self) -> float | None:
+        """Return the temperature of the oil in its tank now; None: its oil has none."""
         ...
 
 
@@ -115,8 +123,11 @@ class SupplyPorts:
             if isinstance(supply, FeedingSupply):
                 supply.feeding.to(self.answers, feeds).run()
                 continue
+            celsius = supply.oil_celsius
             for node, rows in zip(supply.nodes(), groups):
                 fill_feeds(node, rows, self.answers, feeds)
+                for row in rows if celsius is not None else ():
+                    feeds['is_warm'][row], feeds['celsius'][row] = 1.0, celsius
 
     def take(self, fed: Records | None) -> list[float]:
         """
@@ -129,3 +140,21 @@ class SupplyPorts:
         self.answers[:] = fed
         paid: list[float] = fed['paid'].tolist()
         return paid
+
+    @property
+    def nbytes(self) -> int:
+        """Return the size of a `snapshot`."""
+        return len(self.answers) * ANSWER.itemsize
+
+    def snapshot(self) -> bytes:
+        """Return the answers as `ANSWER`."""
+        return self._numbers[:, :-1].tobytes()
+
+    def restore(self, answers: Records) -> None:
+        """Continue from the `ANSWER` of a `snapshot`, (n_actuators,) or (0,)."""
+        self._numbers[:, :-1] = answers.view(np.float64).reshape(
+            len(answers), ANSWER.itemsize // 8)
+
+    @property
+    def _numbers(self) -> NDArray[np.float64]:
+        return self.answers.view(np.float64).reshape(-1, SUPPLY_REPLY.itemsize // 8)

@@ -19,9 +19,9 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.emergency_line import changing_line
-from isa_ros.surroundings.feeding import made, n_samples, summed, SupplyCircuit
+from isa_ros.surroundings.feeding import advance_circuit, made, n_samples, SupplyCircuit
 from isa_ros.surroundings.supply import saved_states, Supply
-from isa_ros.surroundings.supply_port import SupplyPorts
+from isa_ros.surroundings.supply_port import ANSWER, SupplyPorts
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.surroundings.supply_tick import Answers, keep_answers
 import numpy as np
@@ -197,21 +197,13 @@ class Surroundings:
             body.advance(replies)
         energies = self._ports.take(fed)
         for supply, circuit in zip(self._supplies, self.circuits):
-            if not isinstance(supply, Circuit):
-                has_moved = supply.has_port and bool(energies)
-                supply.advancing.to(
-                    replies, self._ports.answers if has_moved else _NO_ANSWERS).run()
+            if isinstance(supply, Circuit):
+                advance_circuit(
+                    supply, circuit.groups, replies, self._ports.answers if energies else None)
                 continue
-            groups = circuit.groups
-            drawn, returned = (
-                replies[name].tolist() for name in ('supply_volume', 'return_volume'))
-            oil = ([summed(drawn, rows) for rows in groups],
-                   [summed(returned, rows) for rows in groups])
-            paid = [summed(energies, rows) for rows in groups] if energies else []
-            if paid:
-                supply.advance_nodes(oil[0], paid, oil[1])
-            else:
-                supply.advance_held(*oil)
+            has_moved = supply.has_port and bool(energies)
+            supply.advancing.to(
+                replies, self._ports.answers if has_moved else _NO_ANSWERS).run()
 
     def parts(
             self, ports: Records, feeds: Records, replies: Records, fed: Records
@@ -251,7 +243,7 @@ class Surroundings:
 
         """
         return b''.join([saved_states(self.supplies, self._owners),
-                         self._ports.answers.tobytes(), self._values.snapshot(),
+                         self._ports.snapshot(), self._values.snapshot(),
                          *(circuit.snapshot() for circuit in self._circuits),
                          *(body.snapshot() for body in self.bodies.values())])
 
@@ -265,7 +257,7 @@ class Surroundings:
             The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        sizes = [len(self._owners) * SUPPLY_STATE.itemsize, self._ports.answers.nbytes,
+        sizes = [len(self._owners) * SUPPLY_STATE.itemsize, self._ports.nbytes,
                  self._values.nbytes, *(own.saved_size for own in self._circuits)]
         end = sum(sizes)
         for body in self.bodies.values():
@@ -277,15 +269,14 @@ class Surroundings:
         supplies = np.concatenate([
             restored_rows(of_supplies, SUPPLY_STATE, 1, k * SUPPLY_STATE.itemsize, name)
             for k, name in enumerate(self._owners)])
-        answers = restored_rows(
-            of_ports, SUPPLY_REPLY, len(self._ports.answers), 0, 'supply ports')
+        answers = restored_rows(of_ports, ANSWER, len(self._ports.answers), 0, 'supply ports')
         for own, state in zip(self._circuits, of_circuits):
             own.refuse_snapshot(state)
         self._values.restore(of_values)
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change()
         self.supplies[list(SUPPLY_STATE.names or ())] = supplies
-        self._ports.answers[:] = answers
+        self._ports.restore(answers)
         for own, state in zip(self._circuits, of_circuits):
             own.restore(state)
         for body, state in zip(self.bodies.values(), of_bodies):

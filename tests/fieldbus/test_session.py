@@ -62,6 +62,16 @@ def test_a_bag_of_a_bus_is_replayed_without_a_master(tmp_path: Path):
     assert len(applied) == 1 + 20
 
 
+def test_a_bag_of_a_bus_with_a_warm_tank_is_replayed_in_memory(tmp_path: Path):
+    """The tank's temperature reaches the actuators of a bus, and their heat the tank."""
+    run = prepared(tmp_path, MASTER, config='warm_stand', duration_s=0.02)
+    run_without_ros(run.session, None, lambda: False)
+    bag = Bag(tmp_path / 'bag')
+    report = replay(bag)
+    assert report.is_equal and report.is_whole and report.report.ticks == 21
+    assert '/station/tank_oil_temperature' in bag.types
+
+
 def test_what_the_watchdog_does_is_replayed_too(tmp_path: Path):
     """In real time, after a control word and silence: an event at its tick."""
     run = prepared(tmp_path, [(ENABLE, 0)], pace=REAL_TIME, duration_s=0.05)

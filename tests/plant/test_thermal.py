@@ -56,7 +56,7 @@ def test_heat_of_the_losses_is_stored_or_carried_away(
     own = thermal_plant(oil_to_body=inner, body_to_air=outer).thermal
     state = state_at(oil, body)
     before, sizes = stored(own, state), [size(own, state)]
-    heat(h, oil_heat, body_heat, inflow, own, state)
+    heat(h, oil_heat, body_heat, inflow, own.supply, own, state)
     gained = stored(own, state) - before
     sizes.append(size(own, state))
     assert state.heat == oil_heat + body_heat
@@ -82,16 +82,16 @@ def test_a_step_is_the_matrix_exponential(h: float, inflow: float, outer: float)
          (2.0 / h + outer * own.ambient) / own.body_capacity],
         [0.0, 0.0, 0.0]])
     expected = expm(h * matrix) @ [30.0, 80.0, 1.0]
-    heat(h, 3.0, 2.0, inflow, own, state)
+    heat(h, 3.0, 2.0, inflow, own.supply, own, state)
     assert (state.oil, state.body) == pytest.approx(tuple(expected[:2]), rel=1e-12, abs=0.0)
 
 
 def test_steps_of_any_length_reach_the_same_temperatures() -> None:
     """A hundred steps or one: the roundings of a hundred steps are 1e-14 of 40 celsius."""
     own, one, many = thermal_plant().thermal, state_at(40.0, 40.0), state_at(40.0, 40.0)
-    heat(0.1, 50.0, 5.0, 1e-6, own, one)
+    heat(0.1, 50.0, 5.0, 1e-6, own.supply, own, one)
     for _ in range(100):
-        heat(1e-3, 0.5, 0.05, 1e-8, own, many)
+        heat(1e-3, 0.5, 0.05, 1e-8, own.supply, own, many)
     assert (many.oil, many.body) == pytest.approx((one.oil, one.body), rel=1e-12, abs=0.0)
     assert (many.to_oil, many.to_air) == pytest.approx((one.to_oil, one.to_air), rel=1e-9)
 
@@ -101,7 +101,7 @@ def test_at_rest_the_oil_is_warmer_by_the_losses_over_the_flow() -> None:
     own, state = thermal_plant(body_to_air=0.0).thermal, state_at(40.0, 40.0)
     pressure, volume = 20.7e6, 1e-5
     for _ in range(3):      # the body needs minutes: a step is exact whatever its length
-        heat(1e5, 1e6 * pressure * volume, 0.0, 1e6 * volume, own, state)
+        heat(1e5, 1e6 * pressure * volume, 0.0, 1e6 * volume, own.supply, own, state)
     warmer = pressure / own.per_volume
     assert warmer == pytest.approx(12.2, abs=0.05)  # 20.7 MPa over 860 kg/m3 times 1970 J/(kg K)
     assert (state.oil - own.supply, state.body - own.supply) == pytest.approx(
@@ -156,8 +156,8 @@ def test_only_the_laminar_share_of_the_leakage_follows_the_viscosity() -> None:
 def test_compiled_equals_python() -> None:
     own = thermal_plant().thermal
     compiled, python = state_at(30.0, 80.0), state_at(30.0, 80.0)
-    heat(1e-3, 0.5, 0.1, 3e-9, own, compiled)
-    heat.py_func(1e-3, 0.5, 0.1, 3e-9, own, python)
+    heat(1e-3, 0.5, 0.1, 3e-9, own.supply, own, compiled)
+    heat.py_func(1e-3, 0.5, 0.1, 3e-9, own.supply, own, python)
     assert compiled.tobytes() == python.tobytes()
     plants = thermal_plant(), thermal_plant()
     warm(63.0, plants[0])

@@ -77,7 +77,9 @@ start, supply or air at which friction is too fast for the plant's step is refus
 is for the ISA v5.
 
 A supply that is a circuit may have a temperature of its own
-([parts.md](parts.md#temperature-of-the-oil)); `supply_celsius` of an actuator does not follow it.
+([parts.md](parts.md#temperature-of-the-oil)). Its oil then flows in with that temperature instead
+of `supply_celsius`, which in the run file is refused beside it, and the heat that it takes along
+comes back to the tank (T10).
 
 This page is written by
 
@@ -260,6 +262,6 @@ def _warmed_up(plant: np.record) -> Iterator[float]:
     state.oil = state.body = own.start
     for second in range(1, _MOMENTS[-1] + 1):
         flow = leakage_at_null(plant, _SUPPLY, float(thickness(state.oil, own.oil)))
-        heat(1.0, flow * _SUPPLY, 0.0, flow, own, state)
+        heat(1.0, flow * _SUPPLY, 0.0, flow, own.supply, own, state)
         if second in _MOMENTS:
             yield float(state.oil)

@@ -13,7 +13,7 @@ from isa_ros.config.runs.emergency_stops import (
     emergency_stops_of, KEY as EMERGENCY_STOPS, refuse_without_dump)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.run_config import RUN, RunConfig
-from isa_ros.config.runs.supplies import supplies_of
+from isa_ros.config.runs.supplies import refuse_unused_temperature, supplies_of
 from isa_ros.config.runs.tick_grid import times_of
 from isa_ros.config.text.names import COORDINATOR
 from isa_ros.config.text.sections import Place, Section
@@ -55,6 +55,8 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     stops = emergency_stops_of(
         values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS)
     if is_checked:
+        refuse_unused_temperature(supplies, {
+            name: own['parameters'] for name, own in values['actuators'].items()}, below)
         refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
         refuse_without_dump(stops, supplies, place / EMERGENCY_STOPS)
     values |= {

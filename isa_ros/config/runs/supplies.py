@@ -1,12 +1,12 @@
 """Supplies of a run file: ``supply`` for all actuators, or ``supplies`` by name."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, ParameterSet, Value
-from isa_ros.config.text.sections import names_at, Place
+from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
@@ -23,6 +23,7 @@ SUPPLY = 'supply'
 PRESSURE, RETURN, GAS = 'pressure', 'return_pressure', 'gas_temperature'
 OIL = 'oil_temperature'
 """Signals that have a topic."""
+_SUPPLY_CELSIUS = ('plant', 'thermal', 'supply_celsius')
 
 
 class Sampled(NamedTuple):
@@ -74,6 +75,11 @@ class SupplyConfig:
         kept = [k for k, name in enumerate(self.feeds) if name in actuators]
         return replace(self, feeds=tuple(self.feeds[k] for k in kept),
                        places=tuple(self.places[k] for k in kept if self.places))
+
+    @property
+    def is_warm(self) -> bool:
+        """Return whether it is a circuit whose oil has the temperature of its tank."""
+        return isinstance(self.sheet, CircuitSupply) and isinstance(self.sheet.heat, MixedHeat)
 
     @property
     def span(self) -> float:
@@ -146,6 +152,31 @@ def supplies_of(
         for name, own in values['supplies'].items())
     refuse_misfed(supplies, actuators, place / 'supplies')
     return supplies
+
+
+def refuse_unused_temperature(
+        supplies: Sequence[SupplyConfig], given: Mapping[str, Section], place: Place) -> None:
+    """
+    Refuse a temperature of the oil that flows in where the tank of a circuit has its own  (T10).
+
+    ``given`` are the parameters of a run file by actuator, ``place`` is that of all actuators.
+
+    Raises
+    ------
+    ConfigError
+        Names the key and the supply.
+
+    """
+    for supply in supplies:
+        for name in supply.feeds if supply.is_warm else ():
+            below: Any = given[name]
+            for key in _SUPPLY_CELSIUS:
+                below = below.get(key) if isinstance(below, dict) else None
+            if below is not None:
+                raise ConfigError(
+                    f'{place / name / "parameters" / ".".join(_SUPPLY_CELSIUS)} is not used: '
+                    f'{supply.name} feeds it with the oil of its tank, which has a temperature '
+                    'of its own')
 
 
 def refuse_misfed(

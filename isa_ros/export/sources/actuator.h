@@ -91,6 +91,8 @@ typedef struct isa_feed {
   double slope;            /* by how much inflow falls with the pressure, m3/s/Pa */
   double share;            /* dq/dP of all actuators over that of this one */
   double flow;             /* what this one drew last, m3/s */
+  double is_warm;          /* 1: its oil has this temperature; 0: that of the configuration */
+  double celsius;          /* of the oil that flows in */
 } isa_feed_t;
 
 /* A command, in force from the begin of the tick that it is given to; zeros: none. */
@@ -122,6 +124,7 @@ typedef struct isa_fed {
   double flow;             /* drawn at the end of the tick, m3/s */
   double conductance;      /* dq/dP of its valve there, m3/s/Pa */
   double paid;             /* energy of the oil drawn in the tick, J */
+  double heat;             /* that its oil took along in the tick, with is_warm, J */
 } isa_fed_t;
 
 /* The signals at the end of a tick; isa_field has their names and units as text. */

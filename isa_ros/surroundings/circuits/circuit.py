@@ -7,11 +7,10 @@ then advances over the same interval with the mean flows. Equation E12.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from isa_ros.core.bound import Bound
-from isa_ros.core.timebase import PLANT_STEP
-from isa_ros.errors import ConfigError, ParameterError, RunError
+from isa_ros.errors import ConfigError, RunError
+from isa_ros.surroundings.circuits.fed import Fed, OwnHeat
 from isa_ros.surroundings.circuits.network import WORK_ROWS
 from isa_ros.surroundings.circuits.nodes import gas_volume, node_energy, node_pressure
 from isa_ros.surroundings.circuits.plan import Network, network_of
@@ -22,20 +21,10 @@ from isa_ros.surroundings.circuits.stiffness import steps_of
 from isa_ros.surroundings.circuits.ticking import (
     advance, FED, fill_nodes, Flowing, Ports, show_rows, Shown)
 from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
-from isa_ros.surroundings.supply_port import FedNode, PORT_STEPS
+from isa_ros.surroundings.supply_port import FedNode
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 import numpy as np
 from numpy.typing import NDArray
-
-
-class Fed(NamedTuple):
-    """One manifold that feeds actuators."""
-
-    place: str
-    flow_slope: float
-    """Sum of their valves' largest dQ/dP, m3/s/Pa."""
-    rows: tuple[int, ...] = ()
-    """Rows of the fed actuators."""
 
 
 class Circuit:
@@ -57,7 +46,8 @@ class Circuit:
             samples: np.ndarray | None = None, name: str = 'supply') -> None:
         self.has_port = True
         """Whether its pressures move within a tick."""
-        self._name, self._fed, self._step = name, tuple(fed), step_ns * 1e-9
+        self.fed = tuple(fed)
+        self._name, self._step = name, step_ns * 1e-9
         self._sheet, self._warmth = sheet, warmth_of(sheet)
         network = self._network_of(sheet)
         self._nodes = [network.node(own.place) for own in fed]
@@ -116,22 +106,15 @@ class Circuit:
     def _checked(self, sheet: CircuitSupply) -> tuple[Network, int]:
         stiffest = network_of(sheet, coldest_oil(sheet, self._warmth))
         steps = steps_of(sheet, stiffest, self._step, self._name)
-        for own, node in zip(self._fed, self._nodes):
-            self._refuse_small(own, stiffest.nodes[node])
+        if self._warmth is not None:
+            self._warmth.refuse_cold(sheet, max(own.coldest for own in self.fed), self._name)
+        for own, node in zip(self.fed, self._nodes):
+            own.refuse_small(stiffest.nodes[node], self._name)
         return stiffest if self._warmth is None else self._network_of(sheet), steps
 
     def _network_of(self, sheet: CircuitSupply) -> Network:
         """Return the network with its oil as warm as it is."""
         return network_of(sheet, None if self._warmth is None else self._warmth.oil_now(sheet))
-
-    def _refuse_small(self, fed: Fed, node: np.record) -> None:
-        """Refuse a manifold whose oil, without an accumulator, is too small to feed  (C16)."""
-        holds, bound = float(node.c) / fed.flow_slope, PORT_STEPS * PLANT_STEP
-        if holds < bound:
-            raise ParameterError(
-                f'{self._name}: parts.{fed.place}: capacity over flow slope of its actuators = '
-                f'{holds * 1e3:.3g} ms, must be >= {bound * 1e3:.3g} ms (four plant steps); '
-                'enlarge its oil_volume_l')
 
     def refuse(self, sheet: CircuitSupply) -> None:
         """Refuse a sheet with which `change` cannot continue; raises as the class."""
@@ -153,7 +136,7 @@ class Circuit:
 
     def fill(self, rows: np.ndarray) -> None:
         """Fill both pressures of the fed actuators, of all rows of a run, for the next tick."""
-        for own, node, back in zip(self._fed, self._nodes, self._returns):
+        for own, node, back in zip(self.fed, self._nodes, self._returns):
             for row in own.rows:
                 rows['supply_pressure'][row] = self._held[node]
                 rows['return_pressure'][row] = self._held[back]
@@ -164,19 +147,25 @@ class Circuit:
         return [(float(self._held[node]), float(self._held[back]))
                 for node, back in zip(self._nodes, self._returns)]
 
+    @property
+    def oil_celsius(self) -> float | None:
+        """Return the temperature of the oil in its tank now; None: its oil has none."""
+        return None if self._warmth is None else float(self._warmth.oil.celsius)
+
     def nodes(self) -> list[FedNode]:
         """Return the manifolds that feed actuators at the start of the next tick."""
         self._fill_nodes.run()
         return [FedNode(*own) for own in self._ports.tolist()]
 
     def advance_nodes(
-            self, drawn: Sequence[float], paid: Sequence[float],
-            returned: Sequence[float]) -> None:
+            self, drawn: Sequence[float], paid: Sequence[float], returned: Sequence[float],
+            heated: Sequence[OwnHeat] = ()) -> None:
         """
         Advance by one tick in which these volumes were drawn at its nodes, m3.
 
         ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
-        the tick. ``returned`` are the volumes given to the return, m3.
+        the tick. ``returned`` are the volumes given to the return, m3, and ``heated`` has of each
+        node what its actuators with a temperature of their own did.
         """
         flows = self._flows
         flows[:] = 0.0
@@ -186,10 +175,13 @@ class Circuit:
         n = len(self._network.nodes)
         self.state[2 * n:3 * n] = 0.0
         self._advance.run()
-        taken = self._account(drawn, paid, returned)
+        taken, carried = self._account(drawn, paid, returned), 0.0
+        for own, back in zip(heated, self._returns):
+            taken -= own.paid - float(self._held[back]) * own.returned
+            carried += own.heat
         self._held[:] = self._work[0, :n]
         if self._warmth is not None and self._warmth.advance(
-                self._step, taken, self.state, self._network):
+                self._step, taken, carried, self.state, self._network):
             self.change(self._sheet)
             return
         self._show()

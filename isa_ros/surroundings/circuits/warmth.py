@@ -10,6 +10,8 @@ capacity, is booked as lost. Equations T7 to T9.
 from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import PLANT_STEP_NS
+from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits.heat import (
     coldest, CoolerPart, heat_capacity, MixedHeat, oil_at, OIL_STATE, warm_oil, ways_of)
 from isa_ros.surroundings.circuits.network import OF_PUMP, PER_NODE
@@ -85,17 +87,38 @@ class Warmth:
         assert isinstance(sheet.heat, MixedHeat)
         return oil_at(sheet.oil, sheet.heat, float(self.oil.taken))
 
-    def advance(self, step: float, taken: float, state: np.ndarray, network: Network) -> bool:
+    def refuse_cold(self, sheet: CircuitSupply, least: float, name: str) -> None:
+        """
+        Refuse oil that can get colder than its actuators' steps can follow, ``least`` celsius.
+
+        Raises
+        ------
+        ParameterError
+            With both temperatures.
+
+        """
+        celsius = _coldest_celsius(sheet, self)
+        if celsius < least:
+            raise ParameterError(
+                f'{name}: its oil can get as cold as {celsius:g} celsius by its start, air and '
+                f'coolants, must be >= {least:.3g} celsius: the friction of an actuator that it '
+                f'feeds is too fast for the plant step of {PLANT_STEP_NS / 1e3:g} us')
+
+    def advance(
+            self, step: float, taken: float, carried: float, state: np.ndarray,
+            network: Network) -> bool:
         """
         Advance by a tick of ``step`` s after which the circuit has this state.
 
-        ``taken`` is the energy that the actuators took, J. Return whether the oil's properties
-        are those of another temperature now.
+        ``taken`` is the energy that the actuators took, J, but for those that have a temperature
+        of their own, from which the oil ``carried`` heat (T10). Return whether the oil's
+        properties are those of another temperature now.
         """
         nodes, elements = network.nodes, network.elements
         until_now = heat_until_now(state, nodes, elements, self._shares.lost)
         heat = (until_now - self.oil.booked + _PERCENT * self._heat.actuators_percent * taken
-                + heat_of_leakage(step, state, elements, len(nodes), self._shares.leaked))
+                + heat_of_leakage(step, state, elements, len(nodes), self._shares.leaked)
+                + carried)
         self.oil.booked = until_now
         warm_oil(step, heat, heat_capacity(self._heat), self._ways, self.oil, self.given)
         if abs(self.oil.celsius - self.oil.taken) < STEP:
@@ -136,8 +159,14 @@ def coldest_oil(sheet: CircuitSupply, own: Warmth | None) -> OilNow:
     heat = sheet.heat
     if own is None or not isinstance(heat, MixedHeat):
         return oil_at_sheet(sheet.oil)
-    ways = ways_of(heat, list(_coolers(sheet).values()))
-    return oil_at(sheet.oil, heat, min(coldest(heat, ways), float(own.oil.celsius)))
+    return oil_at(sheet.oil, heat, _coldest_celsius(sheet, own))
+
+
+def _coldest_celsius(sheet: CircuitSupply, own: Warmth) -> float:
+    """Return the least temperature that the oil has or can get by a sheet."""
+    assert isinstance(sheet.heat, MixedHeat)
+    ways = ways_of(sheet.heat, list(_coolers(sheet).values()))
+    return min(coldest(sheet.heat, ways), float(own.oil.celsius))
 
 
 def _coolers(sheet: CircuitSupply) -> dict[str, CoolerPart]:

@@ -3,7 +3,8 @@
 from isa_ros.config.text.parameter_sets import build_one_of
 from isa_ros.config.text.sections import Place, written
 from isa_ros.config.text.yaml_text import parse
-from isa_ros.surroundings.circuits.circuit import Circuit, Fed
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.network import circuit_advance, WORK_ROWS
 from isa_ros.surroundings.circuits.nodes import node_content, node_pressure
 from isa_ros.surroundings.circuits.plan import Network, network_of

@@ -2,7 +2,8 @@
 
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.circuits import network
-from isa_ros.surroundings.circuits.circuit import Circuit, Fed
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 import pytest

@@ -121,7 +121,7 @@ def test_actuators_have_the_return_pressure_of_their_tick_s_start() -> None:
         'back: {kind: manifold, oil_volume_l: 0.2}\n'
         'filter: {kind: filter, inlet: back, outlet: tank, lpm_per_mpa: 60.0}\n')
     circuit, rows = circuit_of(text, 'main'), np.zeros(1, LOAD_PORT)
-    circuit._fed = (circuit._fed[0]._replace(rows=(0,)),)
+    circuit.fed = (circuit.fed[0]._replace(rows=(0,)),)
     held = []
     for _ in range(3):
         circuit.fill(rows)

@@ -13,7 +13,7 @@ import pytest
 from tests.surroundings.circuits.test_circuit import surplus
 
 SECONDS = {'cooled_station': 1.0, 'crane_circuit': 3.0, 'pump_station': 1.6,
-           'quadruped_power_unit': 1.0}
+           'quadruped_power_unit': 1.0, 'warm_stand': 1.0}
 """What is run of the scenario of the same name: a station's emergency stop and what follows."""
 
 

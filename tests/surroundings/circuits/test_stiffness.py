@@ -4,7 +4,8 @@ import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits import stiffness
-from isa_ros.surroundings.circuits.circuit import Circuit, Fed
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.network import OF_LINE, OF_PUMP
 from isa_ros.surroundings.circuits.plan import Network, network_of
 import numpy as np

@@ -4,7 +4,8 @@ import math
 
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.surroundings.circuits import warmth
-from isa_ros.surroundings.circuits.circuit import Circuit, Fed
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.warmth import STEP
 import numpy as np
 import pytest
