@@ -2,10 +2,16 @@
 
 import json
 from pathlib import Path
+from typing import NamedTuple
 
 import isa_ros
+from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.paths import find
 from isa_ros.core.accounts import SHARES
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.timebase import FORCE_WINDOWS
+from isa_ros.surroundings.port import matched
+from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 import pytest
 import yaml
@@ -13,11 +19,23 @@ import yaml
 DURATION = 0.3      # s: a fall of 5 cm takes 0.10 s
 WINDOW = 0.2e-3     # s, of a tick of 1 ms a fifth
 FINE = {'adc_bits': 24, 'encoder_resolution': 1e-9}
+CLEAR_MS = 90.0     # until then all feet are in the air
 LIGHT = {'mechanics': {'sensor_damping': 200.0}}    # a damping ratio of 0.01
 
 
-def drop(folder: Path, step_ms: float, is_light: bool) -> np.ndarray:
-    """Return the mean force of every actuator in each `WINDOW` of a tilted drop, (n, 12)."""
+class Drop(NamedTuple):
+    """A tilted drop of a quadruped on its twelve actuators."""
+
+    forces: np.ndarray
+    """Mean force of every actuator in each `WINDOW`, N | Nm, (n, 12)."""
+    lacking: float
+    """Largest gap of the work that the actuators gave to that which the body took, J."""
+    flow: float
+    """Sum of all work that was exchanged, to and fro, J."""
+
+
+def quadruped(folder: Path, step_ms: float, is_light: bool) -> isa_ros.Simulation:
+    """Return a quadruped 5 cm above the ground, tilted, with fine sensors and no controller."""
     tree = yaml.safe_load(find('quadruped.yaml', 'config').read_text())
     tree |= {'step_ms': step_ms, 'controller_offset_ms': 0.08}
     tree.pop('controllers', None)
@@ -27,18 +45,89 @@ def drop(folder: Path, step_ms: float, is_light: bool) -> np.ndarray:
     tree['body']['start'] |= {'height_mm': 50.0, 'roll_deg': 3.0, 'pitch_deg': 4.0}
     path = folder / f'drop_{step_ms}.yaml'
     path.write_text(json.dumps(tree))
-    simulation, means = isa_ros.load(path).simulation(), []
-    rows = simulation.surroundings.bodies['body'].rows
-    for _ in range(round(DURATION / (step_ms * 1e-3))):
-        simulation.step()
-        means.append(simulation.group.replies['mean_forces'][rows].T.copy())
-    return np.concatenate(means).reshape(round(DURATION / WINDOW), -1, 12).mean(axis=1)
+    return isa_ros.load(path).simulation()
+
+
+def drop(folder: Path, step_ms: float, is_light: bool, foresees: bool = False) -> Drop:
+    """Return a drop; ``foresees``: the ports know the forces of their own tick."""
+    simulation = quadruped(folder, step_ms, is_light)
+    body, group = simulation.surroundings.bodies['body'], simulation.group
+    means, given, taken = [], [], []
+    for tick in range(round(DURATION / (step_ms * 1e-3))):
+        if foresees and tick * step_ms > CLEAR_MS:
+            foreseen_tick(simulation.surroundings, group, step_ms * 1e-3)
+        elif foresees:
+            one_tick(simulation.surroundings, group)
+        else:
+            simulation.step()
+        means.append(group.replies['mean_forces'][body.rows].T.copy())
+        given.append(group.samples['work'][body.rows].copy())
+        taken.append(float(body.sample['drive_work'][0]))
+    work, received = np.array(given), np.array(taken)
+    gap = work.sum(axis=1) - received
+    return Drop(np.concatenate(means).reshape(round(DURATION / WINDOW), -1, 12).mean(axis=1),
+                float(np.abs(gap - gap[0]).max()), float(np.abs(np.diff(work, axis=0)).sum()))
+
+
+def one_tick(surroundings: Surroundings, group: ActuatorGroup) -> np.ndarray:
+    """Advance both sides by a tick, as a run does; return the ports."""
+    ports = np.zeros(12, LOAD_PORT)
+    surroundings.ports(ports)
+    group.advance(ports)
+    surroundings.advance(group.replies)
+    return ports
+
+
+def foreseen_tick(surroundings: Surroundings, group: ActuatorGroup, tick: float) -> None:
+    """
+    Advance by a tick twice: with ports as they are, and with such as foresee what it gave.
+
+    L15 with the places and speeds at the end of the first try, and with the line through its mean
+    forces instead of L16.
+    """
+    body = surroundings.bodies['body']
+    before, actuators = body.snapshot(), group.snapshot()
+    one_tick(surroundings, group)
+    ends = body._arrays.drives[['position', 'velocity']].copy()
+    forces = group.replies['mean_forces'][body.rows].copy()
+    body.restore(before)
+    group.restore(actuators)
+    ports = np.zeros(12, LOAD_PORT)
+    surroundings.ports(ports)
+    middles = (np.arange(FORCE_WINDOWS) + 0.5) * tick / FORCE_WINDOWS
+    for row, (place, speed), means in zip(body.rows, ends, forces):
+        port = ports[row]
+        slope, force = np.polyfit(middles, means, 1)
+        a, b = matched(place - port['x0'] - tick * (port['v0'] + 0.5 * tick * port['a0']),
+                       speed - port['v0'] - tick * port['a0'], tick, port['stiffness'],
+                       port['damping'])
+        port['a_bias'] = a + port['a0'] - force * port['inverse_mass']
+        port['jerk'] = b - slope * port['inverse_mass']
+    group.advance(ports)
+    surroundings.advance(group.replies)
+
+
+def errors(own: Drop, reference: Drop) -> np.ndarray:
+    """Return the rms of the difference of each actuator's force over that of the force, (12,)."""
+    found: np.ndarray = np.sqrt(np.square(own.forces - reference.forces).mean(axis=0)
+                                / np.square(reference.forces).mean(axis=0))
+    return found
+
+
+@pytest.fixture(scope='module')
+def references(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Drop]:
+    """Return the drops with ticks of 0.1 ms by whether their load cells are light."""
+    folder = tmp_path_factory.mktemp('references')
+    found = {is_light: drop(folder, 0.1, is_light) for is_light in (False, True)}
+    for own in found.values():
+        assert own.forces.shape[1] == 12 and np.abs(own.forces).max() > 1500.0
+    return found
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(('is_light', 'most'), [(False, 5e-3), (True, 7e-3)])
 def test_a_quadruped_lands_as_with_ticks_of_a_tenth(
-        tmp_path: Path, is_light: bool, most: float) -> None:
+        tmp_path: Path, references: dict[bool, Drop], is_light: bool, most: float) -> None:
     """
     Forces at every joint within 0.5 % rms, their peaks within 1 %.
 
@@ -47,12 +136,38 @@ def test_a_quadruped_lands_as_with_ticks_of_a_tenth(
     those a fall from 1 um higher changes the small forces at HAA by 0.4 % already, by where the
     converters round.
     """
-    reference, own = (drop(tmp_path, step_ms, is_light) for step_ms in (0.1, 1.0))
-    assert reference.shape[1] == 12 and np.abs(reference).max() > 1500.0
-    rms = np.sqrt(np.square(own - reference).mean(axis=0) / np.square(reference).mean(axis=0))
+    reference, own = references[is_light], drop(tmp_path, 1.0, is_light)
+    rms = errors(own, reference)
     assert rms.max() < most and np.sort(rms)[-2] < 5e-3
-    peaks = np.abs(own).max(axis=0) / np.abs(reference).max(axis=0) - 1.0
+    peaks = np.abs(own.forces).max(axis=0) / np.abs(reference.forces).max(axis=0) - 1.0
     assert np.abs(peaks).max() < 2.0 * most
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('is_light', [False, True])
+def test_half_a_tick_has_a_tenth_of_the_error_and_of_the_energy_that_does_not_close(
+        tmp_path: Path, references: dict[bool, Drop], is_light: bool) -> None:
+    """Below 0.05 % rms at every joint, and 2e-6 of the exchanged work, of 3e-5 at 1 ms."""
+    own = drop(tmp_path, 0.5, is_light)
+    assert own.flow > 200.0
+    assert errors(own, references[is_light]).max() < 5e-4
+    assert own.lacking < 2e-6 * own.flow
+
+
+@pytest.mark.slow
+def test_what_1_ms_gets_wrong_are_the_forces_that_the_look_ahead_assumes(
+        tmp_path: Path, references: dict[bool, Drop]) -> None:
+    """
+    Ports of the same form that know the forces of their tick: 0.1 % rms, not 0.6 %.
+
+    Neither linearisation nor windows are at fault, but L16: as a foot lands, the next tick's
+    forces are no continuation of the last one's. Energy that does not close: 7e-6, not 3e-5.
+    """
+    own, foreseen = (drop(tmp_path, 1.0, True, foresees) for foresees in (False, True))
+    assert errors(foreseen, references[True]).max() < 1.2e-3
+    assert errors(foreseen, references[True])[7] < 0.1 * errors(own, references[True])[7]
+    assert 2e-5 < own.lacking / own.flow < 5e-5
+    assert foreseen.lacking < 0.3 * own.lacking
 
 
 def test_energy_closes_over_oil_actuators_trunk_and_ground() -> None:
