@@ -1,6 +1,6 @@
 """The leg's drop in memory: beside its kernels alone, with a controller, and many at once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 import os
 from statistics import median
 import time
@@ -9,6 +9,7 @@ from isa_ros.bench.row import Aim, REPEATS, Row, seconds
 from isa_ros.bench.tick import leg_drop
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.core.conditions import CONDITIONS
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.run import load, Run
@@ -19,6 +20,8 @@ import numpy as np
 TICKS = 500
 N_DROPS = 200
 _KERNEL = 'the kernel of three actuators'
+_JOINTS = ('haa', 'hfe', 'kfe')
+_LEAST = 1e-6   # part of a rating: lower than anything measured
 
 
 class _Holder(Controller):
@@ -35,7 +38,9 @@ def in_memory_rows() -> list[Row]:
     alone = _simulated(Simulation(drop))
     return [
         Row(f'floor: {_KERNEL}', kernels * 1e6, 'us'),
-        Row.of('the protection adds to that kernel', _watching_percent(), '%'),
+        Row.of('the protection adds to that kernel', _watching_percent({}), '%'),
+        Row.of('the protection with a level for every condition adds to it',
+               _watching_percent(every_level()), '%').aiming(Aim(8.0, True)),
         Row('a tick of the leg', alone * 1e6, 'us', _KERNEL, kernels / alone),
         Row('a tick of the leg over the kernel', alone / kernels, '1').aiming(Aim(2.0, True)),
         Row('a controller adds to a tick', _added_seconds(drop) * 1e6, 'us').aiming(
@@ -67,11 +72,31 @@ def _added_seconds(drop: Scenario) -> float:
     return median(differences[1:]) / TICKS
 
 
-def _watching_percent() -> list[float]:
-    """Return what watching all conditions adds to the kernel, in %, with and without in turn."""
+def every_level() -> dict[str, float]:
+    """
+    Return a level that is not reached for every one that is off as shipped, by key.
+
+    Those of link and watchdog are part of a link.
+    """
+    found = {'setpoint_timeout_ms': 3.6e6}
+    for condition in CONDITIONS:
+        own = condition.levels
+        if own is None:
+            continue
+        unreached = own.most if condition.is_above else _LEAST
+        if not own.trip:
+            found[f'{condition.name}.trip'] = unreached
+        if not own.warning:
+            found[f'{condition.name}.warning'] = own.trip or unreached
+    return found
+
+
+def _watching_percent(levels: Mapping[str, float]) -> list[float]:
+    """Return what watching with ``levels`` adds to the kernel, in %, with and without in turn."""
     watched, off = (_kernel_work(load('leg', 'drop').replace({
-        f'actuators.{joint}.parameters.reu.protection.switch': switch
-        for joint in ('haa', 'hfe', 'kfe')}).scenario) for switch in ('on', 'off'))
+        f'actuators.{joint}.parameters.reu.protection.{key}': value
+        for joint in _JOINTS for key, value in values.items()}).scenario)
+        for values in (levels, {'switch': 'off'}))
     found = []
     for _ in range(1 + 3 * REPEATS):
         start = time.process_time()
