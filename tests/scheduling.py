@@ -4,6 +4,8 @@ import pytest
 from xdist.scheduler import LoadFileScheduling
 
 LINTERS = 'tests/style/'
+OWN_KERNELS = 'tests/golden/test_shipped_kernels.py', 'tests/scripts/test_make_kernels.py'
+"""Files whose tests make kernels by themselves, and wait for none."""
 
 
 class ByFile(LoadFileScheduling):
@@ -17,9 +19,21 @@ class ByFile(LoadFileScheduling):
         return LINTERS if nodeid.startswith(LINTERS) else super()._split_scope(nodeid)
 
 
+def needs_kernels(item: pytest.Item) -> bool:
+    """Return whether a test waits for the kernels of the shipped configurations."""
+    return not item.nodeid.startswith((LINTERS, *OWN_KERNELS))
+
+
 def long_files_first(items: list[pytest.Item]) -> None:
-    """Sort by file: linters, files with slow tests or nodes, the quick rest to fill the end."""
+    """
+    Sort by file: first what needs no kernels, but for one file whose worker compiles meanwhile.
+
+    Then files with slow tests or nodes; the quick rest fills the end.
+    """
     long = {item.path for item in items
             if item.get_closest_marker('slow') or item.get_closest_marker('ros')}
+    compiling = next((item.path for item in items if item.path in long and needs_kernels(item)),
+                     None)
     items.sort(key=lambda item: (
-        not item.nodeid.startswith(LINTERS), item.path not in long))
+        not item.nodeid.startswith(LINTERS), item.path != compiling, needs_kernels(item),
+        item.path not in long))

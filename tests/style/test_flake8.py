@@ -4,6 +4,7 @@ from pathlib import Path
 
 from ament_flake8.main import main_with_errors
 import pytest
+from tests.garbage import uncollected
 
 ROOT = Path(__file__).parents[2]
 CODE = ('isa_ros', 'msg_adapters', 'benchmarks', 'launch', 'scripts', 'tests', 'setup.py')
@@ -19,5 +20,6 @@ def test_flake8_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """
     monkeypatch.setattr('flake8_docstrings.pep257Checker.run', lambda _: iter(()))
     monkeypatch.chdir(ROOT)
-    return_code, errors = main_with_errors(argv=[p for p in CODE if (ROOT / p).exists()])
+    with uncollected():     # a third faster
+        return_code, errors = main_with_errors(argv=[p for p in CODE if (ROOT / p).exists()])
     assert return_code == 0, '\n'.join(errors)
