@@ -3,7 +3,6 @@
 from isa_ros.actuator.setpoint_range import reference_bounds
 from isa_ros.config.runs.external_config import held_forces
 from isa_ros.export.chosen import choose
-from isa_ros.export.fmi.description import Version
 from isa_ros.export.fmi.inputs import inputs
 from isa_ros.export.fmi.unit import parts_of
 import numpy as np
@@ -13,11 +12,6 @@ pytest.importorskip('fmpy')
 from tests.export.fmi.importing import ERROR, Unit, WARNING  # noqa: E402
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture(scope='module', params=Version)
-def version(request):
-    return request.param
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """Where a unit starts: positions that were not set are those of the actuator at rest."""
 
-from isa_ros.export.fmi.description import Version
 import pytest
 
 pytest.importorskip('fmpy')
@@ -8,11 +7,6 @@ from tests.export.fmi.importing import Unit  # noqa: E402
 
 pytestmark = pytest.mark.slow
 JOLT = 10.0    # N: the oil leaks 5 N in a tick, a load at the piston's place is 25 N off
-
-
-@pytest.fixture(scope='module', params=Version)
-def version(request):
-    return request.param
 
 
 @pytest.fixture
