@@ -21,6 +21,7 @@ RIG = ROOT / 'config' / 'rig_rotary.yaml'
 DROP = ROOT / 'config' / 'scenarios' / 'drop.yaml'
 DEADLINE_S = 120.0  # a first run compiles every kernel
 LOOK_S = 0.005
+_ENDED = FileNotFoundError, ProcessLookupError   # while its files in /proc are read
 
 T = TypeVar('T')
 
@@ -95,9 +96,11 @@ class Started:
         found = {}
         text = Path(f'/proc/{self.pid}/task/{self.pid}/children').read_text()
         for pid in text.split():
-            # A process forked from its parent has the node's name itself.
-            name = Path(f'/proc/{pid}/comm').read_text().strip()
-            arguments = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
+            try:    # A process forked from its parent has the node's name itself.
+                name = Path(f'/proc/{pid}/comm').read_text().strip()
+                arguments = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
+            except _ENDED:
+                continue
             for argument in arguments:
                 if argument.startswith('__node:='):
                     name = argument.removeprefix('__node:=')
@@ -169,7 +172,7 @@ def is_alive(pid: int) -> bool:
     """Return whether a process runs; a zombie does not."""
     try:
         return ') Z ' not in Path(f'/proc/{pid}/stat').read_text()
-    except FileNotFoundError:
+    except _ENDED:
         return False
 
 

@@ -22,6 +22,7 @@ from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 import pytest
 from tests.ros.lockstep.participants import NAMES
+from tests.ros.started import DEADLINE_S
 from tests.ros.test_steady_ticks import driven, Robot
 from tests.tick.quietly import advance
 
@@ -109,7 +110,7 @@ def once(at: int, work: Callable[[TickLoop, Robot], object]) -> Callable[..., ob
 
 def delay(loop: TickLoop, robot: Robot, late_ones: slice = slice(None)) -> None:
     """Let actuators answer later than a wait for them lasts."""
-    robot.transport._next_check = time.monotonic() + 5.0
+    robot.transport._next_check = time.monotonic() + DEADLINE_S
     for end in robot.ends[late_ones]:
         serve = end._role.serve
 
@@ -127,13 +128,13 @@ def delay_first(loop: TickLoop, robot: Robot) -> None:
 
 def shut(loop: TickLoop, robot: Robot) -> None:
     """End the connection of one actuator."""
-    robot.transport._next_check = time.monotonic() + 5.0
+    robot.transport._next_check = time.monotonic() + DEADLINE_S
     robot.ends[1]._wire._socket.shutdown(socket.SHUT_RDWR)
 
 
 def close_ours(loop: TickLoop, robot: Robot) -> None:
     """Let no answer of one actuator arrive."""
-    robot.transport._next_check = time.monotonic() + 5.0
+    robot.transport._next_check = time.monotonic() + DEADLINE_S
     ours = robot.transport._wires
     ours._ends[ours.numbers()[0]].shutdown(socket.SHUT_RD)
 
@@ -150,7 +151,7 @@ def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
 
 def test_an_answer_with_a_changed_parameter_is_left_to_python(tmp_path, observer, places):
     def tune(loop: TickLoop, robot: Robot) -> None:
-        robot.transport._next_check = time.monotonic() + 5.0
+        robot.transport._next_check = time.monotonic() + DEADLINE_S
         serve = robot.ends[0]._role.serve
 
         def tuned() -> None:

@@ -45,7 +45,7 @@ def operate(master: Any) -> None:
     cycle(master)
     master.state = pysoem.OP_STATE
     master.write_state()
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + _LONG_PATIENCE
     while master.state_check(pysoem.OP_STATE, _STATE_US) != pysoem.OP_STATE:
         assert time.monotonic() < deadline
         cycle(master)
