@@ -1,6 +1,5 @@
 """Rows of "Places for extensions" of docs/architecture.md, each made in a copy of the package."""
 
-from pathlib import Path
 import re
 import textwrap
 
@@ -30,12 +29,6 @@ try:
 except ConfigError as error:
     print(error)
 """
-
-
-@pytest.fixture
-def copied(tmp_path: Path) -> PatchedCopy:
-    """Return a copy of the package."""
-    return PatchedCopy(tmp_path)
 
 
 def test_a_text_that_is_not_there_once_is_refused(copied: PatchedCopy) -> None:
