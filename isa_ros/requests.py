@@ -213,7 +213,7 @@ def _refusal(name: str, field: str, value: Any, bound: str) -> SetpointError:
 
 
 def _quoted(value: Any) -> str:
-    return shortened(repr(value))
+    return shortened(repr(value.item() if isinstance(value, np.generic) else value))
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:

@@ -12,11 +12,11 @@ A tick is that of every run (`isa_ros.tick.tick_loop`), in one thread and withou
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-import warnings
 
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.controller import by_name, Controller, only_of, only_rows, Setpoint
+from isa_ros.core.caller import warn
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
@@ -34,12 +34,6 @@ from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 
 _SNAPSHOT = 'snapshot'
-_CALLER = 5     # of `Simulation.step`, counted from `_warn`
-
-
-def _warn(line: str) -> None:
-    """Warn whoever advances the simulation."""
-    warnings.warn(line, stacklevel=_CALLER)
 
 
 class Simulation:
@@ -91,7 +85,7 @@ class Simulation:
             ScheduledSource(scenario.commands, scenario.changes,
                             next_command=scenario.next_command),
             stops=emergency_stops_of(run, self.surroundings),
-            request_range=request_range_of(run) if controllers else None, warn=_warn)
+            request_range=request_range_of(run) if controllers else None, warn=warn)
         """The ticks of the run; its sinks take the rows of each instant."""
         self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
         """`SAMPLE` by actuator at the end of the last tick; the next one overwrites them."""
@@ -165,7 +159,7 @@ class Simulation:
         actuator = self.group.actuators[at]
         refuse_without_effort(name, given, actuator.mode)
         if limited := actuator.admit(row[at]):
-            warnings.warn(limited, stacklevel=2)
+            warn(limited)
 
     def tune(self, name: str, values: Mapping[str, float]) -> None:
         """

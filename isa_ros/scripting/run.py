@@ -6,7 +6,6 @@ from pathlib import Path
 import re
 import sys
 from typing import Any
-import warnings
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.body_config import BodyFactory
@@ -18,6 +17,7 @@ from isa_ros.config.text.changes import replaced, SCENARIO
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.controller import Controller
+from isa_ros.core.caller import warn
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, read_scenario, Scenario
@@ -162,7 +162,7 @@ class Run:
         happened = Tripped()
         happened.add(result.trips)
         for line in (*happened.lines(), *counts_of(self.actuators, result.log.samples[-1])):
-            warnings.warn(line, TripWarning, stacklevel=2)
+            warn(line, TripWarning)
         return result
 
     def _named(self, controllers: Controllers) -> dict[str, Controller]:
@@ -215,7 +215,7 @@ class Run:
                     f'{self._config.name}: controllers: {name!r} takes part in this run; give it '
                     'as one of the controllers')
         for line in self.scenario.warnings:
-            warnings.warn(line, stacklevel=3)
+            warn(line)
         run = run.calling([own for own in run.called if own.name not in names])
         added = [name for name in names if name not in run.controllers]
         return replace(self.scenario, run=run.with_controllers(added))

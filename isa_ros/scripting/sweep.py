@@ -6,11 +6,11 @@ from itertools import product
 import os
 import sys
 from typing import Any
-import warnings
 
 from isa_ros.config.differences import section_differences
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.core.caller import warn
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.scripting.outcomes import Failure, Measure, outcomes
@@ -120,8 +120,8 @@ def _name_failures(
     if len(failures) == len(cases) and all(np.isnan(column).all() for column in measured.values()):
         raise first.error
     case = ', '.join(f'{key} = {value}' for key, value in cases[row].items())
-    warnings.warn(
-        f'{len(failures)} of {len(cases)} runs lack a value; with {case}: {first}', stacklevel=3)
+    warn(
+        f'{len(failures)} of {len(cases)} runs lack a value; with {case}: {first}')
 
 
 def _name_followers(run: RunConfig, other: RunConfig, changed: Sequence[str]) -> None:
@@ -140,7 +140,7 @@ def _name_followers(run: RunConfig, other: RunConfig, changed: Sequence[str]) ->
                   if not any(f'{key}.'.startswith(f'{one}.') for one in changed)]
         if follow:
             named = ', '.join(follow[:_MOST_NAMED])
-            warnings.warn(
+            warn(
                 f'{len(follow)} more values of {actuator.name} follow {", ".join(keys)}: {named}'
                 f'{", ..." if len(follow) > _MOST_NAMED else ""}; `isa params --set` lists them, '
-                'and a value in the run file is kept', stacklevel=3)
+                'and a value in the run file is kept')

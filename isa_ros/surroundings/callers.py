@@ -32,6 +32,13 @@ def cause_of(error: BaseException) -> str:
     return f'{shown} ({Path(place.filename).name}:{place.lineno})'
 
 
+def at_step(error: IsaError, controller: object) -> str:
+    """Return an error about what a controller returned, with the place where its step begins."""
+    controller = getattr(controller, '__wrapped__', controller)
+    code = getattr(getattr(controller, 'step', None), '__code__', None)
+    return f'{error} ({Path(code.co_filename).name}:{code.co_firstlineno})' if code else str(error)
+
+
 def numbers_of(names: Sequence[str], what: str, given: ArrayLike) -> NDArray[np.float64]:
     """
     Return an array with a finite number for each of k actuators, (k,).

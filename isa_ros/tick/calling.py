@@ -8,7 +8,7 @@ from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, RunError, SetpointError
 from isa_ros.requests import fill_requests, merge_requests
-from isa_ros.surroundings.callers import failures_of
+from isa_ros.surroundings.callers import at_step, failures_of
 from isa_ros.tick.exchange import IDLE_S, Rows, Transport
 import numpy as np
 
@@ -70,7 +70,7 @@ class CallingTransport:
             try:
                 fill_requests(setpoints, self._names, self._requests, state.actuators)
             except SetpointError as error:
-                raise RunError(f'{where}: {error}') from error
+                raise RunError(f'{where}: {at_step(error, controller)}') from error
 
     def receive(self, rows: Rows) -> None:
         """Wait for the others, then add the requests of the controllers."""

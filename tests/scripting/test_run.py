@@ -217,8 +217,10 @@ def test_a_setpoint_that_is_limited_is_reported_before_the_run():
     leg = read(find('leg', CONFIG))
     leg['actuators']['kfe']['beyond_range'] = 'limit'
     with pytest.warns(UserWarning, match=(
-            r'far.yaml: tracks.kfe\[0\].effort = 10000 N, limited to 7500 N, the rated force')):
+            r'far.yaml: tracks.kfe\[0\].effort = 10000 N, limited to 7500 N, the rated force')
+            ) as caught:
         result = isa_ros.load(leg, far).simulate()
+    assert [own.filename for own in caught] == [__file__]
     assert result.log.applied[1]['effort'].tolist() == [0.0, 0.0, 7500.0]
 
 

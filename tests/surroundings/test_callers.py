@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.callers import cause_of, failures_of, numbers_of
+from isa_ros.errors import ConfigError, RunError, SetpointError
+from isa_ros.surroundings.callers import at_step, cause_of, failures_of, numbers_of
 import numpy as np
 import pytest
 
@@ -75,3 +75,29 @@ def test_the_first_number_that_is_not_finite_is_named(bad: float) -> None:
         numbers_of(['ram', 'arm', 'leg'], 'force', [0.0, bad, np.nan])
     with pytest.raises(ConfigError, match='^ram: force = '):
         numbers_of(['ram'], 'force', [bad])
+
+
+class Steps:
+    """A controller as far as its place goes."""
+
+    def step(self, state: object) -> int:
+        """Return no setpoints."""
+        return 3
+
+
+class OfRobot:
+    """Stands before a controller, as that of a robot does."""
+
+    __wrapped__ = Steps()
+
+    def step(self, state: object) -> int:
+        """Call the controller."""
+        return self.__wrapped__.step(state)
+
+
+def test_what_a_controller_returns_has_the_place_of_its_step() -> None:
+    line = Steps.step.__code__.co_firstlineno
+    for controller in (Steps(), OfRobot()):
+        assert at_step(SetpointError('3 are none'), controller) == (
+            f'3 are none (test_callers.py:{line})')
+    assert at_step(SetpointError('3 are none'), object()) == '3 are none'

@@ -178,7 +178,9 @@ def test_a_failure_names_the_controller_and_its_method(call, words):
     ({'rom': Setpoint(0.1)}, r"^Mine\.step at t = 0\.003 s: 'rom' is not an actuator"),
     (3, r'^Mine\.step at t = 0\.003 s: 3 are no setpoints'),
     ({'kfe': Setpoint(float('nan'))},
-     r'^Mine\.step at t = 0\.003 s: kfe: setpoint position = nan')])
+     r'^Mine\.step at t = 0\.003 s: kfe: setpoint position = nan, must be finite '
+     r'\(test_calling\.py:\d+\)$'),
+    ({'kfe': Setpoint(np.float64('nan'))}, r' s: kfe: setpoint position = nan, must be finite ')])
 def test_a_step_that_fails_or_returns_no_setpoints_names_its_time(wanted, words):
     """Of the second controller, which has no name in a run file: that of its class."""
     own, of_run = joined(Quiet(), Mine([], 'b', wanted), called=['first'])

@@ -66,6 +66,11 @@ class RobotController(Controller):
                         if body.name == robot or parted(body.name)[0] == robot}
         self._every: Mapping[str, Any] | None = None
 
+    @property
+    def __wrapped__(self) -> Controller:
+        """Return the controller of the robot alone."""
+        return self._own
+
     def start(self, names: Sequence[str]) -> None:
         """Begin anew with the actuators of the robot; as `Controller.start`."""
         self._own.start(list(self._names))

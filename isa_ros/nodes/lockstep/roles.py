@@ -11,11 +11,13 @@ from typing import Protocol
 
 from isa_ros.controller import by_name, Controller, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
+from isa_ros.errors import SetpointError
 from isa_ros.nodes.actuator.node import ActuatorNode
 from isa_ros.requests import fill_requests
 from isa_ros.run.wire.parts import actuator_parts, Parts
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import Step
+from isa_ros.surroundings.callers import at_step
 import numpy as np
 
 
@@ -177,8 +179,11 @@ class ControllerRole:
             step.tick * self._step_ns, by_name(self._names, found.samples),
             by_name(self._roster.supplies, found.supplies), only_rows(found.bodies),
             found.samples)
-        fill_requests(
-            self._controller.step(state), self._names, self._requests, state.actuators)
+        setpoints = self._controller.step(state)
+        try:
+            fill_requests(setpoints, self._names, self._requests, state.actuators)
+        except SetpointError as error:
+            raise SetpointError(at_step(error, self._controller)) from error
         return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:
