@@ -6,7 +6,6 @@ period of the converters.
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, section
@@ -81,15 +80,19 @@ def sensors_record(sheet: Sensors) -> np.record:
 
 @kernel
 def encode(position, resolution):
-    """Return the position rounded to whole encoder counts  (S1)."""
-    return math.floor(position / resolution + 0.5) * resolution
+    """
+    Return the position rounded to whole encoder counts  (S1).
+
+    One that has diverged stays what it is: `math.floor` of it raises in plain Python.
+    """
+    return np.floor(position / resolution + 0.5) * resolution
 
 
 @kernel
 def convert(value, lowest, highest, step):
     """Return the nearest code of a converter with full scale ``lowest`` to ``highest``  (S2)."""
     clipped = max(lowest, min(highest - step, value))
-    return lowest + math.floor((clipped - lowest) / step + 0.5) * step
+    return lowest + np.floor((clipped - lowest) / step + 0.5) * step
 
 
 @kernel

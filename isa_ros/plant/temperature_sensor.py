@@ -8,7 +8,6 @@ sensor keeps its reading. Neglected: its delay, for the oil takes seconds to get
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
@@ -74,5 +73,5 @@ def read_temperature(step, temperature, key, own, before):
     if own.sigma != 0.0:
         value += own.sigma * normal(key, step, TEMPERATURE_NOISE)
     if own.resolution > 0.0:
-        value = math.floor(value / own.resolution + 0.5) * own.resolution
+        value = np.floor(value / own.resolution + 0.5) * own.resolution
     return value

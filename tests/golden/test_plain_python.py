@@ -25,12 +25,34 @@ print(json.dumps(message_digests.digests(load_scenario(shipped(SCENARIOS)[sys.ar
 """
 
 
-def digests(config: str, scenario: str, is_disabled: str) -> bytes:
-    """Return digests of 20 ticks, in a process of its own."""
+DIVERGING = """
+import math
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.errors import SimulationDiverged
+from isa_ros.scenario.scenario import idle
+from isa_ros.simulation import Simulation
+simulation = Simulation(idle(load_run(find('rig_linear', CONFIG))))
+simulation.step()
+simulation.group.actuators[0].memory.continuous['plant']['chambers']['p_b'][0] = math.inf
+try:
+    simulation.step()
+except SimulationDiverged as error:
+    print(error)
+"""
+
+
+def printed(program: str, is_disabled: str, *arguments: str) -> bytes:
+    """Return what a program prints, in a process of its own."""
     return subprocess.run(
-        [sys.executable, '-W', 'ignore', '-c', PROGRAM, config, scenario], cwd=ROOT, check=True,
+        [sys.executable, '-W', 'ignore', '-c', program, *arguments], cwd=ROOT, check=True,
         timeout=600, env={**os.environ, 'NUMBA_DISABLE_JIT': is_disabled},
         stdout=subprocess.PIPE).stdout
+
+
+def digests(config: str, scenario: str, is_disabled: str) -> bytes:
+    """Return digests of 20 ticks."""
+    return printed(PROGRAM, is_disabled, config, scenario)
 
 
 @pytest.mark.slow
@@ -40,6 +62,16 @@ def test_20_ticks_are_the_same_bytes(config, scenario):
     plain = digests(config, scenario, '1')
     assert plain.count(b'"') > 40    # of many topics
     assert plain == digests(config, scenario, '0')
+
+
+@pytest.mark.slow
+def test_a_run_that_diverges_ends_with_the_same_sentence():
+    """All that a tick computes after the state has diverged takes a nan, and none raises."""
+    plain = printed(DIVERGING, '1').decode()
+    assert plain == (
+        'ram: plant.chambers.p_a = nan at t = 0.002000 s, must be finite: the simulation '
+        'diverged\n')
+    assert plain == printed(DIVERGING, '0').decode()
 
 
 def records() -> dict[str, np.dtype]:

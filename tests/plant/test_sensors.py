@@ -1,6 +1,7 @@
 """Encoder and converters."""
 
 from dataclasses import replace
+import math
 
 from hypothesis import given, strategies as st
 from isa_ros.errors import ParameterError
@@ -18,6 +19,13 @@ def test_encoder_is_within_half_a_count(position):
     # half a count plus one rounding of the product at 0.12 m
     assert abs(read - position) <= 0.5e-6 + 1.4e-17
     assert read / 1e-6 == pytest.approx(round(read / 1e-6), abs=1e-9)
+
+
+@pytest.mark.parametrize('position', [math.nan, math.inf, -math.inf])
+def test_a_position_that_has_diverged_stays_that(position):
+    """Compiled, and in plain Python, whose `math.floor` refuses it: the run tells its state."""
+    for encode in (sensors.encode, getattr(sensors.encode, 'py_func', sensors.encode)):
+        assert str(float(encode(position, ISA_V5.encoder))) == str(position)
 
 
 @given(force=st.floats(-2e4, 2e4))
