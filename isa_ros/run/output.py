@@ -123,10 +123,11 @@ class RunOutput(RowSink):
         outlets, packer = self._outlets, self._packer
         t_ns = tick * self._step_ns
         start_ns = max(0, t_ns - self._step_ns)
+        devices = packer.rare.devices(t_ns, start_ns) if outlets.actuators else ()
         subscribed = [
             row for row, outlet in enumerate(outlets.actuators)
             if outlet.has_subscribers() or packer.has_applied(row) or row in rows.tuned
-            or packer.rare.has_device(row, t_ns, start_ns)]
+            or row in devices]
         has_surroundings = outlets.surroundings.has_subscribers() or bool(
             rows.tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:

@@ -66,10 +66,7 @@ class RareMessages:
         if tuned_supplies:
             self._found[OF_SUPPLIES] = applied_parameters(
                 coordinator_messages.NODE, tuned_supplies, applied_ns)
-        self._due.times[:] = t_ns, tick_start_ns
-        changed = [row for row in range(len(self._actuators))
-                   if self.has_device(row, t_ns, tick_start_ns)] if (
-                       self._announces or self._is_any_due.run()) else []
+        changed = self.devices(t_ns, tick_start_ns)
         self._announces = False
         for row in changed:
             name = self._actuators[row]
@@ -77,10 +74,16 @@ class RareMessages:
         if self._is_run and (changed or t_ns % PERIOD_NS == 0):
             self.diagnose()
 
-    def has_device(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
-        """Return whether a tick has a message of an actuator's device; also after `announce`."""
-        since, age, is_stale = self._values[row, _OF_STATUS].tolist()
-        return self._announces or is_status_due(since, age, is_stale, t_ns, tick_start_ns)
+    def devices(self, t_ns: int, tick_start_ns: int) -> list[int]:
+        """Return the rows of which a tick has a message of the device; after `announce` all."""
+        if self._announces:
+            return list(range(len(self._actuators)))
+        self._due.times[:] = t_ns, tick_start_ns
+        if not self._is_any_due.run():      # at nearly every tick
+            return []
+        statuses = self._values[:, _OF_STATUS].tolist()
+        return [row for row, (since, age, is_stale) in enumerate(statuses)
+                if is_status_due(since, age, is_stale, t_ns, tick_start_ns)]
 
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""

@@ -1,7 +1,8 @@
 """Host time: pace and progress, on a clock of the test's own."""
 
 from isa_ros.errors import ConfigError
-from isa_ros.run.pacing import Laps, Pace, ProgressMeter, RunProgress, SLICE_S
+from isa_ros.run.pacing import (
+    Laps, Pace, ProgressMeter, QUIET_S, QuietStretch, RunProgress, SLICE_S)
 import pytest
 
 
@@ -161,3 +162,48 @@ def test_reports_are_a_period_apart():
         meter.update(tick * 62_500_000)
     assert [report.t_ns for report in reports] == [
         250_000_000, 500_000_000, 750_000_000, 1_000_000_000]
+
+
+class Loop:
+    """Quiet ticks that take a time each, of which some call does no more than a few."""
+
+    def __init__(self, host: Host, tick_s: float) -> None:
+        self.host, self.tick_s, self.ticks, self.most = host, tick_s, 0, 1000
+
+    def advance_quietly(self, until: int) -> None:
+        done = min(until - self.ticks, self.most)
+        self.ticks += done
+        self.host.now += done * self.tick_s
+
+
+def test_a_stretch_of_quiet_ticks_grows_to_its_time_and_no_further():
+    """Of 0.3 ms each: 16 take 4.8 ms and stay, where 5 ms pass without a look at a service."""
+    host = Host()
+    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    found = []
+    for _ in range(6):
+        before = loop.ticks
+        stretch.advance(loop, 1000)
+        found.append(loop.ticks - before)
+    assert found == [1, 2, 4, 8, 16, 16]
+    assert 0.5 * QUIET_S < 16 * 3e-4 < QUIET_S == 5e-3
+    loop.tick_s = 7e-4                      # a slower one: 16 take 11.2 ms, and 8 take 5.6 ms
+    for expected in (16, 8, 4, 4):
+        before = loop.ticks
+        stretch.advance(loop, 1000)
+        assert loop.ticks - before == expected
+
+
+def test_a_stretch_that_was_cut_short_says_nothing_of_the_next_one():
+    host = Host()
+    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    for _ in range(3):
+        stretch.advance(loop, 1000)
+    loop.most = 2
+    stretch.advance(loop, 1000)
+    assert loop.ticks == 1 + 2 + 4 + 2
+    loop.most = 1000
+    stretch.advance(loop, 1000)
+    assert loop.ticks == 9 + 8
+    stretch.advance(loop, 20)
+    assert loop.ticks == 19                 # the last tick of a run is for Python
