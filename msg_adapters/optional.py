@@ -2,10 +2,11 @@
 
 from importlib.util import find_spec
 
-SIMULATION = 'simulation_interfaces'
+SIMULATION, TRANSFORMS = 'simulation_interfaces', 'tf2_msgs'
 
 OPTIONAL = {
-    SIMULATION: 'the standard services that pause, step and reset a run'}
+    SIMULATION: 'the standard services that pause, step and reset a run',
+    TRANSFORMS: 'where robots are, on tf and tf_static'}
 """Package -> what it is for."""
 
 

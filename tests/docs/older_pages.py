@@ -120,6 +120,8 @@ NOT_RUN = {
     'paper-errata': {'python scripts/measure_readings.py': MINUTES},
     'power_unit': {'./isa study power_unit --out docs': MINUTES},
     'protection': {'ros2 param set /ram reu.protection.mask 4.0': ROS2},
+    'quadruped': {'ros2 launch isa_ros robot.launch.py scenario:=quadruped_trot '
+                  'real_time_factor:=1 rviz:=true': ROS2},
     'real_data': {'isa against press.csv my_press.yaml --mapping press.yaml --out overlay.png':
                   FOREIGN,
                   'isa compare press.csv runs/mine --mapping press.yaml': FOREIGN,
@@ -135,7 +137,9 @@ NOT_RUN = {
     'speed': {'.venv/bin/python -m pip install -r requirements-bench.txt': INSTALLS},
     'studies': {'./isa study --all --out docs': MINUTES},
     'temperature': {'./isa study temperature --out docs': MINUTES},
-    'time': {'./isa bringup leg.yaml --paused': ROS2},
+    'time': {'./isa bringup leg.yaml --paused': ROS2,
+             'ros2 service call /set_simulation_state simulation_interfaces/srv/'
+             'SetSimulationState \\': ROS2},
     'validation': {'./isa validate --out docs': MINUTES},
     'view': {'./isa view leg --scenario drop': ENDLESS},
     'versions': {'git worktree add ../isa_ros-0.2.0 0.2.0 && ../isa_ros-0.2.0/isa replay BAG':

@@ -19,4 +19,4 @@ def test_a_folder_of_its_name_is_no_package(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_the_packages_are_those_of_ros():
-    assert list(OPTIONAL) == ['simulation_interfaces']
+    assert list(OPTIONAL) == ['simulation_interfaces', 'tf2_msgs']

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
@@ -15,6 +16,7 @@ from isa_ros.run.option import Option
 from isa_ros.run.options import OPTIONS, Request, request_of_parameters
 from isa_ros.run.output import Outlet, Outlets
 from msg_adapters import clock, event
+from msg_adapters.optional import is_installed, TRANSFORMS
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -47,9 +49,21 @@ class CoordinatorNode(Node):
 
         ``actuators`` are those of the actuators in this process; empty if their own nodes publish.
         """
-        published = PreparedPublishers(
-            self, [replace(topic, name=_relative(topic.name)) for topic in surroundings])
-        return Outlets(self._time, self._events, published, actuators)
+        topics = [replace(topic, name=_relative(topic.name)) for topic in surroundings]
+        return Outlets(self._time, self._events, self._published(topics), actuators)
+
+    def _published(self, topics: Sequence[Topic]) -> PreparedPublishers:
+        """Create the publishers of supplies and body, with transforms where they may be."""
+        if not is_installed(TRANSFORMS):
+            return PreparedPublishers(self, topics)
+        from isa_ros.nodes.coordinator.transforms import TransformPublishers
+        return TransformPublishers(self, topics)
+
+    def show_fixed(self, run: RunConfig) -> None:
+        """Publish where the fixed roots of robots are, as long as this node is."""
+        if is_installed(TRANSFORMS):
+            from isa_ros.nodes.coordinator.transforms import publish_fixed
+            self._fixed = publish_fixed(self, run)
 
     def request(self) -> Request:
         """

@@ -195,6 +195,7 @@ def _record(
         actuators: Sequence[Outlet], report: Report | None, should_stop: StopRequest) -> None:
     """Record the run and serve its requests."""
     supplies = node.supplies = SupplyParameters(node, surroundings)
+    node.show_fixed(session.run)
     acceptance = Acceptance(node, session.run.accept)
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),

@@ -16,6 +16,12 @@ STATE = _reliable(10)
 KEPT = _reliable(10, DurabilityPolicy.TRANSIENT_LOCAL)
 """Applied setpoints and parameters: a later subscription receives the last ones."""
 
+MOVING = _reliable(100)
+"""Transforms that change, as tf2 publishes them."""
+
+FIXED = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
+"""Transforms that stay."""
+
 SETPOINT = _reliable(1)
 """Setpoints: only the newest one is kept."""
 
