@@ -5,8 +5,10 @@ A channel is SOURCE.FIELD of a result, or SOURCE.FIELD[k] for a number of severa
 """
 
 from collections.abc import Container, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
+from isa_ros.analysis.signals import diagrams
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.units import MILLI, MPA
@@ -17,32 +19,9 @@ import numpy as np
 _DEGREE = float(np.radians(1.0))
 _XYZ = 'xyz'
 
-
-class Curve(NamedTuple):
-    """One line of a panel."""
-
-    label: str
-    channel: str
-    is_reference: bool = False
-    """Drawn dashed."""
-
-
-class Panel(NamedTuple):
-    """One diagram over time."""
-
-    title: str
-    unit: str
-    scale: float
-    """SI units in one of ``unit``."""
-    curves: Sequence[Curve]
-
-
-class Group(NamedTuple):
-    """The panels of one actuator or body."""
-
-    name: str
-    title: str
-    panels: Sequence[Panel]
+Curve = diagrams.Curve[str]
+Panel = diagrams.Panel[str]
+Group = diagrams.Group[str]
 
 
 def groups_of(run: RunConfig) -> list[Group]:
@@ -54,19 +33,14 @@ def groups_of(run: RunConfig) -> list[Group]:
 
 def recorded(groups: Iterable[Group], channels: Container[str]) -> list[Group]:
     """Return groups without curves, panels and groups of which no channel is there."""
-    found = []
-    for group in groups:
-        panels = [panel._replace(curves=[own for own in panel.curves if own.channel in channels])
-                  for panel in group.panels]
-        kept = [panel for panel in panels if panel.curves]
-        if kept:
-            found.append(group._replace(panels=kept))
-    return found
+    found = [replace(group, panels=diagrams.kept(group.panels, channels.__contains__))
+             for group in groups]
+    return [group for group in found if group.panels]
 
 
 def channels_of(groups: Iterable[Group], nodes: Iterable[Node]) -> list[str]:
     """Return the channels of groups and scene, each once."""
-    names = [curve.channel for group in groups for panel in group.panels for curve in panel.curves]
+    names = [curve.signal for group in groups for panel in group.panels for curve in panel.curves]
     names += [channel for node in nodes for channel in node.channels]
     return [*dict.fromkeys(names)]
 
@@ -74,8 +48,8 @@ def channels_of(groups: Iterable[Group], nodes: Iterable[Node]) -> list[str]:
 def tree_of(groups: Iterable[Group], place_of: dict[str, int]) -> list[dict[str, Any]]:
     """Return groups for JSON; ``place_of`` are the places of the channels in a frame."""
     return [{'name': group.name, 'title': group.title, 'panels': [{
-        'label': f'{panel.title}, {panel.unit}', 'scale': panel.scale, 'curves': [{
-            'label': own.label, 'channel': place_of[own.channel], 'dash': own.is_reference}
+        'label': panel.label, 'scale': panel.scale, 'curves': [{
+            'label': own.label, 'channel': place_of[own.signal], 'dash': own.is_reference}
             for own in panel.curves]} for panel in group.panels]} for group in groups]
 
 

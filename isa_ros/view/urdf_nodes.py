@@ -5,11 +5,10 @@ Drawn are boxes, cylinders and spheres; a mesh is left out, since its file is no
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-import math
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
-from isa_ros.config.robots.urdf import axis_of, turned
+from isa_ros.config.robots.urdf_numbers import axis_of, number_of, numbers_of, origin_of
 from isa_ros.config.robots.urdf_text import element_of
 from isa_ros.errors import ConfigError
 from isa_ros.view.nodes import Floats, Motion, Node, Shape, WORLD
@@ -74,7 +73,7 @@ def _add(found: list[Node], links: Mapping[str, Element], by_parent: Mapping[str
         found[at] = node._replace(shapes=[*_shapes(link, f'{name}: link {node.name}')])
         for joint in by_parent.get(node.name, ()):
             where = f'{name}: joint {joint.get("name", "")}'
-            place, rotation = _origin(joint, where)
+            place, rotation = origin_of(joint, where)
             motion, axis, channels = _motion(joint, moved, where)
             found.append(Node(_end(joint, 'child'), first + at, place, rotation, (), motion,
                               axis, channels))
@@ -104,31 +103,9 @@ def _shapes(link: Element, where: str) -> Iterator[Shape]:
             if own.tag not in _SIZES:
                 continue
             keys, n = _SIZES[own.tag]
+            part = f'{where}: {own.tag}'
             words = keys.split()
-            size = _numbers(own, words[0], n, where) if len(words) == 1 else [
-                _numbers(own, word, 1, where)[0] for word in words]
-            place, rotation = _origin(visual, where)
+            size = numbers_of(own, words[0], n, part) if len(words) == 1 else [
+                number_of(own, word, part) for word in words]
+            place, rotation = origin_of(visual, where)
             yield Shape(own.tag, size, place, rotation)
-
-
-def _origin(element: Element, where: str) -> tuple[Floats, Floats]:
-    """Return place, (3,), and rotation, (3, 3), of the ``<origin>`` below an element."""
-    found = element.find('origin')
-    if found is None:
-        return np.zeros(3), np.eye(3)
-    return (np.array(_numbers(found, 'xyz', 3, where)),
-            turned(*_numbers(found, 'rpy', 3, where)))
-
-
-def _numbers(element: Element, key: str, n: int, where: str) -> list[float]:
-    """Return n finite numbers of an attribute; zeros if there is none."""
-    text = element.get(key)
-    if text is None:
-        return [0.0] * n
-    try:
-        found = [float(word) for word in text.split()]
-    except ValueError:
-        found = []
-    if len(found) != n or not all(map(math.isfinite, found)):
-        raise ConfigError(f'{where}: {key} = {text!r}, must be {n} finite numbers')
-    return found

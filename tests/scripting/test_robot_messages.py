@@ -9,7 +9,7 @@ import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, find_drawing
 from isa_ros.config.robots.geometry import poses
-from isa_ros.config.robots.urdf import Pose
+from isa_ros.config.robots.urdf_numbers import Pose
 from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import read
 from isa_ros.core.signals import COMMAND

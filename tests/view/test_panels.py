@@ -29,19 +29,19 @@ def test_units_are_those_of_the_actuator():
     position, force, pressure, spool, current = groups['kfe'].panels
     assert [own.scale for own in (position, force, pressure, spool, current)] == [
         1e-3, 1.0, 1e6, 1e-3, 1e-3]
-    assert [own.channel for own in pressure.curves] == [
+    assert [own.signal for own in pressure.curves] == [
         'kfe.pressure_a', 'kfe.pressure_b', 'supply.pressure']
-    assert [(own.channel, own.is_reference) for own in force.curves] == [
+    assert [(own.signal, own.is_reference) for own in force.curves] == [
         ('kfe.force', False), ('kfe.force_reference', True)]
     assert groups['haa'].panels[0].scale == pytest.approx(0.0174532925)
 
 
 def test_contacts_of_one_foot_have_axes_and_of_several_the_upward_force():
     leg, = (own for own in groups_of(isa_ros.load('leg').configuration) if own.name == 'body')
-    assert [(own.label, own.channel) for own in leg.panels[0].curves] == [
+    assert [(own.label, own.signal) for own in leg.panels[0].curves] == [
         (axis, f'body.foot_force[{k}]') for k, axis in enumerate('xyz')]
     four = groups_of(isa_ros.load('quadruped').configuration)[-1].panels[0]
-    assert [own.channel for own in four.curves] == [
+    assert [own.signal for own in four.curves] == [
         f'body.{foot}_foot_wrench[2]' for foot in ('lf', 'rf', 'lh', 'rh')]
 
 

@@ -83,9 +83,10 @@ def test_nodes_are_told_in_json_by_the_places_of_their_channels():
     ('<link name="foot"/>', '<link name="foot"/><link name="b"/>', 'arm: has 2 links without'),
     ('child link="plate"', 'child link="boom"', 'arm: boom is the child of two joints'),
     ('child link="plate"', 'child link="pl"', 'arm: has 2 links'),
-    ('radius="0.04"', 'radius="thick"', "arm: link boom: radius = 'thick', must be 1 finite"),
-    ('size="0.5 0.4 0.02"', 'size="0.5 0.4"', "link plate: size = '0.5 0.4', must be 3 finite"),
-    ('xyz="0.1 0.2 0.3"', 'xyz="0.1 inf 0.3"', 'arm: joint lift: xyz = '),
+    ('radius="0.04"', 'radius="thick"', "arm: link boom: cylinder radius = 'thick', must be fin"),
+    (' size="0.5 0.4 0.02"', '', 'link plate: box size = None, must be three numbers'),
+    ('size="0.5 0.4 0.02"', 'size="0.5 0.4"', "link plate: box size = '0.5 0.4', must be three"),
+    ('xyz="0.1 0.2 0.3"', 'xyz="0.1 inf 0.3"', 'arm: joint lift: origin xyz = '),
     ('xyz="0 3 4"', 'xyz="0 0 0"', 'arm: joint lift: axis xyz = 0 0 0'),
     ('<robot', '<!DOCTYPE x><robot', 'has a document type')])
 def test_what_cannot_be_drawn_is_refused(old, new, message):

@@ -7,7 +7,7 @@ import math
 from isa_ros.config.robots.drives import Linkage
 from isa_ros.config.robots.geometry import motion_of, point, poses
 from isa_ros.config.robots.reach import Reach, reach_of, swept
-from isa_ros.config.robots.urdf import Pose
+from isa_ros.config.robots.urdf_numbers import Pose
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.robot_config import RobotConfig

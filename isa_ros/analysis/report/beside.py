@@ -1,6 +1,7 @@
 """Two runs over each other on one page: the differences of their configurations, then both."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from isa_ros.analysis.report.document import document, Shown
@@ -105,18 +106,18 @@ def _numbered(panels: Sequence[Panel]) -> Iterator[Panel]:
     for panel in panels:
         counts[panel.label] = counts.get(panel.label, 0) + 1
         n = counts[panel.label]
-        yield panel._replace(title=panel.title if n == 1 else f'{panel.title} ({n})')
+        yield replace(panel, title=panel.title if n == 1 else f'{panel.title} ({n})')
 
 
 def _panel(panels: Sequence[tuple[Panel, str]]) -> Panel:
     """Return one panel with the curves of all, named by their run."""
     first = panels[0][0]
-    curves = [own._replace(label=f'{run}: {own.label}') for panel, run in panels
+    curves = [replace(own, label=f'{run}: {own.label}') for panel, run in panels
               for own in panel.curves]
     caption = 'In one of the runs only.' if len(panels) == 1 else ' '.join(
         _apart(one, other, first) for one, other in zip(panels[0][0].curves, panels[1][0].curves)
         if one.label == other.label)
-    return first._replace(curves=curves, caption=caption)
+    return replace(first, curves=curves, caption=caption)
 
 
 def _apart(one: Curve, other: Curve, panel: Panel) -> str:

@@ -1,58 +1,22 @@
-"""What a report shows over time, as data: groups of panels with their curves and captions."""
+"""The diagrams of a report: curves are of signals that were recorded."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from isa_ros.analysis.signals import diagrams
 from isa_ros.analysis.signals.signals import Signal
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-
-class Curve(NamedTuple):
-    """One line of a panel."""
-
-    label: str
-    signal: Signal
-    """SI."""
-    is_reference: bool = False
-    """Drawn dashed."""
-
-
-class Panel(NamedTuple):
-    """One diagram over time; all of its curves have one unit."""
-
-    title: str
-    unit: str
-    scale: float
-    """SI units in one of ``unit``."""
-    curves: Sequence[Curve]
-    caption: str
-    """What to see, in words."""
-
-    @property
-    def label(self) -> str:
-        """Return title and unit."""
-        return f'{self.title}, {self.unit}' if self.unit else self.title
-
-
-class Group(NamedTuple):
-    """The panels of one actuator, body or circuit."""
-
-    name: str
-    """Of its files: a name of a run, which may have a slash."""
-    title: str
-    panels: Sequence[Panel]
-    sources: Sequence[str]
-    """The actuators and supplies whose events are marked in it."""
+Curve = diagrams.Curve[Signal]
+Panel = diagrams.Panel[Signal]
+Group = diagrams.Group[Signal]
 
 
 def drawn(panels: Sequence[Panel]) -> list[Panel]:
     """Return panels without curves that were not recorded, and without empty ones."""
-    kept = [panel._replace(curves=[own for own in panel.curves if len(own.signal.t)])
-            for panel in panels]
-    return [panel for panel in kept if panel.curves]
+    return diagrams.kept(panels, lambda signal: len(signal.t) > 0)
 
 
 def columns(signal: Signal, labels: Sequence[str]) -> list[Curve]:

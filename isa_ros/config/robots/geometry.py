@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.config.robots.tree import composed
-from isa_ros.config.robots.urdf import Floats, Pose
+from isa_ros.config.robots.urdf_numbers import Floats, Pose
 from isa_ros.core.elementary import cos, sin
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Points, RobotDrive, RobotLink, RobotSheet)

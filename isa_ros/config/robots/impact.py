@@ -4,7 +4,7 @@ from collections.abc import Sequence
 import math
 
 from isa_ros.config.robots.geometry import point, poses
-from isa_ros.config.robots.urdf import Floats, Pose
+from isa_ros.config.robots.urdf_numbers import Floats, Pose
 from isa_ros.surroundings.bodies.robot.sheet import RobotContact, RobotSheet
 import numpy as np
 

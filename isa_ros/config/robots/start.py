@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from isa_ros.config.robots.geometry import point, poses, quaternion
 from isa_ros.config.robots.patterns import numbers_by_name
 from isa_ros.config.robots.tree import Tree
-from isa_ros.config.robots.urdf import Pose, turned
+from isa_ros.config.robots.urdf_numbers import Pose, turned
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import InText, Key, Leaf, ParameterSet, ValueKind
 from isa_ros.config.text.sections import Place, section_at

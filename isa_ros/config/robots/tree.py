@@ -8,7 +8,8 @@ turn). Every link of the URDF keeps its own axes as a frame of the link that it 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from isa_ros.config.robots.urdf import Floats, Pose, Urdf, UrdfJoint
+from isa_ros.config.robots.urdf import Urdf, UrdfJoint
+from isa_ros.config.robots.urdf_numbers import Floats, Pose
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointKind, Matrix, matrix, RobotFrame, RobotJoint, RobotLink, Vector, vector)

@@ -5,39 +5,23 @@ Read are names, parents, places, axes, ranges and inertias; shapes, colours and 
 skipped.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 from pathlib import Path
 import re
-from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
+from isa_ros.config.robots.urdf_numbers import (
+    ALONG_X, axis_of, Floats, number_of, origin_of, Pose)
 from isa_ros.config.robots.urdf_text import element_of
-from isa_ros.core.elementary import cos, sin
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.bodies.robot.sheet import ORIGIN
 import numpy as np
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
 
 MAX_BYTES = 16 << 20    # of one file; meshes are in files of their own
 JOINT_KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating')
 _NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
-_ROUNDING = 1e-15       # of the sine of pi, of which a turn by 90 deg is free
-_ALONG_X = (1.0, 0.0, 0.0)
 _IMPOSSIBLE = 1e-3      # by which a principal moment may exceed the sum of the two others
-
-
-class Pose(NamedTuple):
-    """A frame in the axes of another one."""
-
-    place: Floats
-    """m, (3,)."""
-    rotation: Floats
-    """Its axes in the columns, (3, 3)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,11 +145,11 @@ def _link(element: Element, where: str) -> UrdfLink:
     inertial = element.find('inertial')
     if inertial is None:
         return UrdfLink(element.attrib['name'], 0.0, np.zeros(3), np.zeros((3, 3)))
-    mass = _number(_below(inertial, 'mass', where), 'value', f'{where}: mass')
+    mass = number_of(_below(inertial, 'mass', where), 'value', f'{where}: mass')
     if mass < 0.0:
         raise ConfigError(f'{where}: mass value = {mass:g} kg, must be >= 0 kg')
     given = _below(inertial, 'inertia', where)
-    xx, xy, xz, yy, yz, zz = (_number(given, key, f'{where}: inertia') for key in (
+    xx, xy, xz, yy, yz, zz = (number_of(given, key, f'{where}: inertia') for key in (
         'ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz'))
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     moments = np.linalg.eigvalsh(inertia)
@@ -177,7 +161,7 @@ def _link(element: Element, where: str) -> UrdfLink:
         raise ConfigError(
             f'{where}: inertia has the principal moments {_numbers(moments)} kg m2, the largest '
             'must be <= the sum of the two others, as of any rigid body')
-    origin = _origin(inertial, where)
+    origin = origin_of(inertial, where)
     return UrdfLink(element.attrib['name'], mass, origin.place,
                     origin.rotation @ inertia @ origin.rotation.T)
 
@@ -197,30 +181,10 @@ def _joint(element: Element, where: str, links: dict[str, UrdfLink]) -> UrdfJoin
         if link not in links:
             raise ConfigError(f'{where}: {side} = {link!r} is not a link; '
                               f'{alternatives(link, list(links))}')
-    axis = np.array(_ALONG_X) if kind in ('fixed', 'floating') else axis_of(element, where)
+    axis = np.array(ALONG_X) if kind in ('fixed', 'floating') else axis_of(element, where)
     low, high = _range(element, kind, where)
     return UrdfJoint(
-        element.attrib['name'], kind, parent, child, _origin(element, where), axis, low, high)
-
-
-def axis_of(joint: Element, where: str) -> Floats:
-    """
-    Return the axis of a joint that moves, of length 1, joint axes, (3,); without ``<axis>`` x.
-
-    Raises
-    ------
-    ConfigError
-        It has no direction, or is not of three finite numbers.
-
-    """
-    given = joint.find('axis')
-    if given is None:
-        return np.array(_ALONG_X)
-    axis = _vector(given, 'xyz', f'{where}: axis')
-    length = math.sqrt(float(axis @ axis))
-    if length == 0.0:
-        raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
-    return axis / length
+        element.attrib['name'], kind, parent, child, origin_of(element, where), axis, low, high)
 
 
 def _range(element: Element, kind: str, where: str) -> tuple[float, float]:
@@ -232,7 +196,7 @@ def _range(element: Element, kind: str, where: str) -> tuple[float, float]:
         raise ConfigError(
             f'{where}: has no <limit lower upper>, which a {kind} joint needs'
             f'{"; without a range its type is continuous" if kind == "revolute" else ""}')
-    low, high = (_number(limit, key, f'{where}: limit', 0.0) for key in ('lower', 'upper'))
+    low, high = (number_of(limit, key, f'{where}: limit', 0.0) for key in ('lower', 'upper'))
     if not low < high:
         unit = 'rad' if kind == 'revolute' else 'm'
         raise ConfigError(
@@ -245,59 +209,6 @@ def _below(element: Element, tag: str, where: str) -> Element:
     if found is None:
         raise ConfigError(f'{where}: <{element.tag}> lacks <{tag}>')
     return found
-
-
-def _origin(element: Element, where: str) -> Pose:
-    """Return the ``<origin>`` below an element; the frame itself without one."""
-    found = element.find('origin')
-    if found is None:
-        return Pose(np.zeros(3), np.eye(3))
-    return Pose(_vector(found, 'xyz', f'{where}: origin', ORIGIN),
-                turned(*_vector(found, 'rpy', f'{where}: origin', ORIGIN)))
-
-
-def turned(roll: float, pitch: float, yaw: float) -> Floats:
-    """Return R_z(yaw) R_y(pitch) R_x(roll), (3, 3), with exact zeros in turns by 90 deg."""
-    (s_r, c_r), (s_p, c_p), (s_y, c_y) = (
-        (sin(angle), cos(angle)) for angle in map(float, (roll, pitch, yaw)))
-    rotation = np.array([
-        [c_y * c_p, c_y * s_p * s_r - s_y * c_r, c_y * s_p * c_r + s_y * s_r],
-        [s_y * c_p, s_y * s_p * s_r + c_y * c_r, s_y * s_p * c_r - c_y * s_r],
-        [-s_p, c_p * s_r, c_p * c_r]])
-    return np.where(np.abs(rotation) < _ROUNDING, 0.0, rotation)
-
-
-def _vector(
-        element: Element, key: str, where: str,
-        default: tuple[float, float, float] | None = None) -> Floats:
-    text = element.get(key)
-    if text is None and default is not None:
-        return np.array(default)
-    numbers = list(_finite(text or '', f'{where} {key}'))
-    if len(numbers) != 3:
-        raise ConfigError(f'{where} {key} = {text!r}, must be three numbers')
-    return np.array(numbers)
-
-
-def _number(element: Element, key: str, where: str, default: float | None = None) -> float:
-    text = element.get(key)
-    if text is None and default is not None:
-        return default
-    numbers = list(_finite(text or '', f'{where} {key}'))
-    if len(numbers) != 1:
-        raise ConfigError(f'{where} {key} = {text!r}, must be a number')
-    return numbers[0]
-
-
-def _finite(text: str, where: str) -> Iterator[float]:
-    for word in text.split():
-        try:
-            value = float(word)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            raise ConfigError(f'{where} = {text!r}, must be finite numbers')
-        yield value
 
 
 def _numbers(values: Floats) -> str:

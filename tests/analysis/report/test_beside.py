@@ -1,5 +1,6 @@
 """Two runs over each other: what differs first, then both in each diagram."""
 
+from dataclasses import replace
 from pathlib import Path
 import re
 
@@ -103,8 +104,8 @@ def test_a_caption_says_how_far_apart_they_are():
 
 def test_only_curves_of_one_name_are_held_against_each_other():
     one, other = group([1.0], [0.0]), group([2.0], [0.0])
-    renamed = other._replace(panels=[own._replace(curves=[
-        own.curves[0]._replace(label='estimated')]) for own in other.panels])
+    renamed = replace(other, panels=[replace(own, curves=[
+        replace(own.curves[0], label='estimated')]) for own in other.panels])
     panel, = over_each_other('ram', (one, renamed), ('a', 'b')).panels
     assert panel.caption == '' and [own.label for own in panel.curves] == [
         'a: measured', 'b: estimated']
@@ -122,7 +123,7 @@ def test_a_panel_or_group_of_one_run_is_shown_alone():
 def test_panels_of_one_title_stay_apart():
     """As those of the joints of a robot's legs."""
     first = group([1.0], [0.0])
-    twice = first._replace(panels=[*first.panels, *group([5.0], [0.0]).panels])
+    twice = replace(first, panels=[*first.panels, *group([5.0], [0.0]).panels])
     both = over_each_other('ram', (twice, twice), ('a', 'b'))
     assert [own.title for own in both.panels] == ['force', 'force (2)']
     assert [own.signal.values[0] for own in both.panels[1].curves] == [5.0, 5.0]

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from isa_ros.config.robots.geometry import poses
 from isa_ros.config.robots.tree import tree_of, z_along
-from isa_ros.config.robots.urdf import load_urdf, Pose, read_urdf, turned
+from isa_ros.config.robots.urdf import load_urdf, read_urdf
+from isa_ros.config.robots.urdf_numbers import Pose, turned
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
