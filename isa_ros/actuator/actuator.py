@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import NoReturn
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.constants import digest_of, write_constants
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
@@ -45,7 +45,8 @@ class SmartActuator:
     """
 
     def __init__(
-            self, config: ActuatorConfig, timing: Timing, memory: Memory | None = None) -> None:
+            self, config: ConfiguredActuator, timing: Timing,
+            memory: Memory | None = None) -> None:
         self.name = config.name
         self.sheet = config.sheet
         self.is_rotary = config.sheet.is_rotary

@@ -6,8 +6,8 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.loads.sheets import LocalLoad
 
 
-class ActuatorConfig(Protocol):
-    """Configuration of an actuator; `isa_ros.config.runs.run_file` provides it."""
+class ConfiguredActuator(Protocol):
+    """An actuator as it is configured; `isa_ros.config.runs.run_file` provides it."""
 
     @property
     def name(self) -> str:

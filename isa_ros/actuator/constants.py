@@ -2,7 +2,7 @@
 
 import hashlib
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.link import link_key
 from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import actuator_record
@@ -12,7 +12,7 @@ from isa_ros.loads.sheets import own_record
 from isa_ros.reu.cascade import initial_gains
 
 
-def write_constants(config: ActuatorConfig, timing: Timing, memory: Memory) -> None:
+def write_constants(config: ConfiguredActuator, timing: Timing, memory: Memory) -> None:
     """Write the constants of an actuator into its row of the memory."""
     memory.is_shared[0] = config.load is None
     constants = memory.constants
@@ -22,7 +22,7 @@ def write_constants(config: ActuatorConfig, timing: Timing, memory: Memory) -> N
     constants['link_key'] = link_key(timing.seed, config.name)
 
 
-def digest_of(config: ActuatorConfig, timing: Timing, mode: int, memory: Memory) -> str:
+def digest_of(config: ConfiguredActuator, timing: Timing, mode: int, memory: Memory) -> str:
     """Return a hash of every resolved parameter; ``mode`` is that of the start, a number."""
     text = f'{timing} {config.load} {initial_gains(config.sheet.reu)} {mode} {config.auto_enable}'
     return hashlib.sha256(memory.constants.tobytes() + text.encode()).hexdigest()[:16]

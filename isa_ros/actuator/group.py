@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
@@ -51,7 +51,7 @@ class ActuatorGroup:
     ``replies`` are `LOAD_REPLY` rows; (n,) each, in the order of ``configs``.
     """
 
-    def __init__(self, configs: Sequence[ActuatorConfig], timing: Timing) -> None:
+    def __init__(self, configs: Sequence[ConfiguredActuator], timing: Timing) -> None:
         self._timing = timing
         self._steps = timing.steps
         self._memory = memory_of(len(configs))

@@ -77,9 +77,9 @@ def set_values(options: Namespace) -> bool:
 
 def command(options: Namespace) -> bool:
     """Send a setpoint or a request to an actuator, and print what became of it."""
-    from isa_ros.nodes.terminal.setpoints import command as send, request, Wanted
+    from isa_ros.nodes.terminal.setpoints import command as send, request, GivenSetpoint
     values = vars(options)
-    wanted = Wanted(
+    wanted = GivenSetpoint(
         options.position, options.velocity, options.effort,
         {name: values[name] for name in GAINS if values[name] is not None},
         {name: values[name] for name in REFERENCES if values[name] is not None})

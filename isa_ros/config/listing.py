@@ -23,7 +23,7 @@ from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.plant.sheet_fit import Fit, fits
+from isa_ros.plant.sheet_fit import fits, SheetFit
 from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 from isa_ros.text.table import aligned
 
@@ -168,7 +168,7 @@ def _given(parameters: Parameters, source: str, prefix: str = '') -> dict[str, s
     return found
 
 
-def _fitted(title: str, found: Sequence[Fit]) -> str:
+def _fitted(title: str, found: Sequence[SheetFit]) -> str:
     """Return the table of what a data sheet states, and what the model of the valve has."""
     head = ('of the data sheet', 'stated', 'model', 'unit')
     rows = [(one.what, '-' if one.stated is None else f'{one.stated:.4g}', f'{one.model:.4g}',

@@ -5,14 +5,14 @@ import re
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.ticking import group_tick, Ticked
 from isa_ros.config.assembly import bodies_in_form, surroundings_of, timing_of
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
-from isa_ros.export.layout import Layout
+from isa_ros.export.layout import MemoryLayout
 from isa_ros.export.reserved import RESERVED
 from isa_ros.export.starting import start_actuator, Started
 from isa_ros.reu.cascade import initial_gains
@@ -69,9 +69,9 @@ class Exported:
         """Return all kernels with their memories."""
         return self.starting, self.ticking
 
-    def layout(self) -> Layout:
+    def layout(self) -> MemoryLayout:
         """Return the places of all memory, in one block."""
-        return Layout(one.memory for one in self.kernels)
+        return MemoryLayout(one.memory for one in self.kernels)
 
 
 def word_of(actuator: str, given: str | None = None) -> str:
@@ -122,7 +122,7 @@ def exported(chosen: Chosen, *, name: str | None = None) -> Exported:
         Called(group_tick, own))
 
 
-def _started(config: ActuatorConfig, start: Records, own: Ticked) -> Started:
+def _started(config: ConfiguredActuator, start: Records, own: Ticked) -> Started:
     """Return the memory of the start."""
     mode = start_mode(config.name, config.mode, config.sheet.reu)
     return Started(start, np.array(initial_gains(config.sheet.reu)),

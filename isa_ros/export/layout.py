@@ -32,7 +32,7 @@ class Word(NamedTuple):
     is_place: bool
 
 
-class Layout:
+class MemoryLayout:
     """Places of the arrays of ``memories``, in their order: bytes from the begin of a block."""
 
     def __init__(self, memories: Iterable[Any]) -> None:

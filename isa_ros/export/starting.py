@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.rest import rest, Rows
 from isa_ros.actuator.rows import Memory
 from isa_ros.config.runs.external_config import held_forces
@@ -10,7 +10,7 @@ from isa_ros.core.kernel import kernel
 import numpy as np
 
 
-def start_forces(config: ActuatorConfig, configured: float) -> tuple[float, float]:
+def start_forces(config: ConfiguredActuator, configured: float) -> tuple[float, float]:
     """
     Return the forces, N | Nm, that an actuator may begin with: those that it holds.
 

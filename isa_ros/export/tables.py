@@ -16,7 +16,7 @@ from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.core.units import of_coordinate
 from isa_ros.core.version import VERSION
 from isa_ros.export.exported import Exported
-from isa_ros.export.layout import Layout
+from isa_ros.export.layout import MemoryLayout
 from isa_ros.export.starting import start_forces
 from isa_ros.export.state_checks import Check, checks, FINITE, GAIN
 from isa_ros.reu.wiring import possible_modes
@@ -64,7 +64,7 @@ def _defined(values: Iterable[tuple[str, Any]]) -> Iterator[str]:
     yield from (f'#define {name} {value}' for name, value in values)
 
 
-def _places(own: Exported, layout: Layout) -> Iterator[str]:
+def _places(own: Exported, layout: MemoryLayout) -> Iterator[str]:
     """Yield the places of what the source reads and writes."""
     ticked, memory = own.ticked, own.ticked.memory
     yield from _defined([
@@ -82,7 +82,7 @@ def _places(own: Exported, layout: Layout) -> Iterator[str]:
         ('HAS_OWN_LOAD', int(own.has_own_load)), ('HAS_LINK', int(own.actuator.has_link))])
 
 
-def _kernels(own: Exported, layout: Layout) -> Iterator[str]:
+def _kernels(own: Exported, layout: MemoryLayout) -> Iterator[str]:
     """Yield the kernels, and the tables of their memories one behind the other."""
     words = [list(layout.table(one.memory)) for one in own.kernels]
     ends = np.cumsum([0, *map(len, words)])
@@ -94,7 +94,7 @@ def _kernels(own: Exported, layout: Layout) -> Iterator[str]:
         f'{{{word.value}, {int(word.is_place)}}}' for table in words for word in table])
 
 
-def _image(layout: Layout) -> Iterator[str]:
+def _image(layout: MemoryLayout) -> Iterator[str]:
     """Yield words of the memory before a start by their places."""
     yield '/* What the memory holds before a start; the rest is 0. */'
     image = layout.image()
@@ -127,7 +127,7 @@ def _bounds(bounds: Bounds, what: str) -> str:
     return f'{{{number(bounds.low)}, {number(bounds.high)}}} /* {what} */'
 
 
-def _state(own: Exported, layout: Layout) -> Iterator[str]:
+def _state(own: Exported, layout: MemoryLayout) -> Iterator[str]:
     """Yield what a saved state has and what its numbers may be."""
     rows = own.actuator.saved.rows
     actuator = own.actuator

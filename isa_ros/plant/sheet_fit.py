@@ -26,7 +26,7 @@ _GAIN = math.sqrt(0.5)
 _SMALL = 5.0    # % of the current: the small amplitude of data sheets
 
 
-class Fit(NamedTuple):
+class SheetFit(NamedTuple):
     """One number of a sheet, and the model's."""
 
     what: str
@@ -36,7 +36,7 @@ class Fit(NamedTuple):
     unit: str
 
 
-def fits(plant: Plant) -> list[Fit]:
+def fits(plant: Plant) -> list[SheetFit]:
     """Return the fits of a plant's motor, and of its valve if that is of a data sheet."""
     found = [*_efficiencies(plant.drive)] if isinstance(plant, MotorPlant) else []
     if not isinstance(plant.valve, DataSheetValve):
@@ -47,14 +47,14 @@ def fits(plant: Plant) -> list[Fit]:
             *_behind_hysteresis(plant.spool, plant.valve)]
 
 
-def _efficiencies(sheet: Motor) -> Iterator[Fit]:
+def _efficiencies(sheet: Motor) -> Iterator[SheetFit]:
     for k, (drop, speed) in enumerate(zip(sheet.pressure_mpa, sheet.speed_rpm)):
         volumetric, mechanical = sheet.efficiencies(k)
         at = f'at {drop:g} MPa and {speed:g} rpm'
-        yield Fit(f'volumetric efficiency {at}', sheet.volumetric_percent[k],
-                  volumetric / PERCENT, '%')
-        yield Fit(f'mechanical efficiency {at}', sheet.mechanical_percent[k],
-                  mechanical / PERCENT, '%')
+        yield SheetFit(f'volumetric efficiency {at}', sheet.volumetric_percent[k],
+                       volumetric / PERCENT, '%')
+        yield SheetFit(f'mechanical efficiency {at}', sheet.mechanical_percent[k],
+                       mechanical / PERCENT, '%')
 
 
 def ports(current_ma: float, p_a: float, p_b: float, p_s: float, lands: np.record) -> tuple[
@@ -86,7 +86,7 @@ def _root(is_below: Callable[[float], bool], most: float) -> float:
     return 0.5 * (low + high)
 
 
-def _flows(sheet: DataSheetValve, lands: np.record) -> Iterator[Fit]:
+def _flows(sheet: DataSheetValve, lands: np.record) -> Iterator[SheetFit]:
     drop = sheet.rated_drop_mpa * MPA
     full = sheet.flow.currents_ma[-1]
     sides = [('extending', 1, sheet.flow.flows_lpm[-1])]
@@ -95,15 +95,15 @@ def _flows(sheet: DataSheetValve, lands: np.record) -> Iterator[Fit]:
     for name, sign, stated in sides:
         q_a = ports(sign * full, 0.5 * drop, 0.5 * drop, drop, lands)[0]
         what = f'flow {name} at {full:g} mA, {sheet.rated_drop_mpa:g} MPa over both lands'
-        yield Fit(what, None if sheet.compensated_drop_mpa > 0.0 else stated, sign * q_a / LPM,
-                  'l/min')
+        yield SheetFit(what, None if sheet.compensated_drop_mpa > 0.0 else stated,
+                       sign * q_a / LPM, 'l/min')
     if sheet.compensated_drop_mpa > 0.0:
         supply = 2.0 * drop + sheet.compensated_drop_mpa * MPA
-        yield Fit('flow behind the compensator', None,
-                  ports(full, 0.0, 0.0, supply, lands)[0] / LPM, 'l/min')
+        yield SheetFit('flow behind the compensator', None,
+                       ports(full, 0.0, 0.0, supply, lands)[0] / LPM, 'l/min')
 
 
-def _leakages(sheet: DataSheetValve, lands: np.record) -> Iterator[Fit]:
+def _leakages(sheet: DataSheetValve, lands: np.record) -> Iterator[SheetFit]:
     at, full = sheet.leakage, sheet.flow.currents_ma[-1]
 
     def total(current_ma: float) -> float:
@@ -112,43 +112,43 @@ def _leakages(sheet: DataSheetValve, lands: np.record) -> Iterator[Fit]:
         x = current_ma * MILLI * lands.k_spool
         return float(port_flows(x, p_a, p_b, supply, 0.0, lands)[2]) / LPM
     for current, stated in zip(at.current_ma, at.total_lpm):
-        yield Fit(f'leakage at {current:g} mA, {at.pressure_mpa:g} MPa', stated, total(current),
-                  'l/min')
+        yield SheetFit(f'leakage at {current:g} mA, {at.pressure_mpa:g} MPa', stated,
+                       total(current), 'l/min')
     currents = np.linspace(0.0, full, _FINE)
     totals = [total(float(current)) for current in currents]
     k = int(np.argmax(totals))
-    yield Fit(f'largest leakage, at {currents[k]:.3g} mA', None, totals[k], 'l/min')
+    yield SheetFit(f'largest leakage, at {currents[k]:.3g} mA', None, totals[k], 'l/min')
 
 
-def _pressure_gain(sheet: DataSheetValve, lands: np.record) -> Fit:
+def _pressure_gain(sheet: DataSheetValve, lands: np.record) -> SheetFit:
     own, supply = sheet.pressure_gain, sheet.leakage.pressure_mpa * MPA
     current = own.current_percent * PERCENT * sheet.flow.currents_ma[-1]
     p_a, p_b = shut(current, supply, lands)
     base_a, base_b = shut(0.0, supply, lands)
     share = ((p_a - p_b) - (base_a - base_b)) / supply / PERCENT
-    return Fit(f'pressure gain: load pressure at {own.current_percent:g} % of the current',
-               own.percent if own.percent > 0.0 else None, share, '%')
+    return SheetFit(f'pressure gain: load pressure at {own.current_percent:g} % of the current',
+                    own.percent if own.percent > 0.0 else None, share, '%')
 
 
-def _responses(sheet: object) -> Iterator[Fit]:
+def _responses(sheet: object) -> Iterator[SheetFit]:
     if isinstance(sheet, DataSheetSpool):
         own = SecondOrder(sheet.natural_frequency_rad_per_s, sheet.damping_ratio)
         for at in ('minus_90_deg', 'minus_3_db'):
-            yield Fit(f'spool, {_WORDS[at]}', sheet.frequency_hz if sheet.at == at else None,
-                      frequency_of(own, at, 0.0), 'Hz')
+            yield SheetFit(f'spool, {_WORDS[at]}', sheet.frequency_hz if sheet.at == at else None,
+                           frequency_of(own, at, 0.0), 'Hz')
     if isinstance(sheet, ResponseSpool):
         own = SecondOrder(sheet.natural_frequency_rad_per_s, sheet.damping_ratio)
-        yield Fit('spool, damping ratio', None, own.zeta, '1')
+        yield SheetFit('spool, damping ratio', None, own.zeta, '1')
         for at in ('minus_90_deg', 'minus_3_db'):
-            yield Fit(f'spool, {_WORDS[at]} at a small amplitude', getattr(sheet, f'{at}_hz'),
-                      frequency_of(own, at, 0.0), 'Hz')
+            yield SheetFit(f'spool, {_WORDS[at]} at a small amplitude', getattr(sheet, f'{at}_hz'),
+                           frequency_of(own, at, 0.0), 'Hz')
         for at in ('minus_90_deg', 'minus_3_db') if sheet.limit > 0.0 else ():
             stated = getattr(sheet, f'large_{at}_hz')
-            yield Fit(f'spool, {_WORDS[at]} at {sheet.large_percent:g} %', stated or None,
-                      frequency_of(own, at, sheet.limit), 'Hz')
+            yield SheetFit(f'spool, {_WORDS[at]} at {sheet.large_percent:g} %', stated or None,
+                           frequency_of(own, at, sheet.limit), 'Hz')
 
 
-def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[Fit]:
+def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[SheetFit]:
     """Yield -90 degrees of spool and hysteresis together, and what makes it the stated one."""
     if not isinstance(sheet, ResponseSpool) or valve.hysteresis_percent == 0.0:
         return
@@ -159,11 +159,11 @@ def _behind_hysteresis(sheet: object, valve: Hysteretic) -> Iterator[Fit]:
 
     def is_below(frequency: float) -> bool:
         return (gain_at(own, frequency, 1.0) * passed).real > 0.0
-    yield Fit(f'spool behind the hysteresis, -90 deg at {_SMALL:g} %', None,
-              _root(is_below, own.w_n), 'Hz')
-    yield Fit(f'minus_90_deg_hz with which that is {sheet.minus_90_deg_hz:g} Hz', None,
-              leading(sheet.minus_90_deg_hz, sheet.minus_3_db_hz, -passed.imag / passed.real),
-              'Hz')
+    yield SheetFit(f'spool behind the hysteresis, -90 deg at {_SMALL:g} %', None,
+                   _root(is_below, own.w_n), 'Hz')
+    yield SheetFit(f'minus_90_deg_hz with which that is {sheet.minus_90_deg_hz:g} Hz', None,
+                   leading(sheet.minus_90_deg_hz, sheet.minus_3_db_hz, -passed.imag / passed.real),
+                   'Hz')
 
 
 _WORDS = {'minus_90_deg': '-90 deg', 'minus_3_db': '-3 dB'}

@@ -169,7 +169,7 @@ class Findings:
 
 
 @dataclass(frozen=True)
-class Group:
+class CheckGroup:
     """A group of checks; ``check`` is a function of a module, so that a worker can call it."""
 
     name: str

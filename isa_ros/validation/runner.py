@@ -8,7 +8,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.text.page import png
 from isa_ros.text.progress import Progress
-from isa_ros.validation.entry import Entry, Group, Observation
+from isa_ros.validation.entry import CheckGroup, Entry, Observation
 from isa_ros.validation.workers import in_workers
 
 
@@ -44,7 +44,7 @@ class GroupFailed(IsaError):
         return str(self.args[0])
 
 
-def chosen(groups: Sequence[Group], only: Sequence[str] | None) -> tuple[Group, ...]:
+def chosen(groups: Sequence[CheckGroup], only: Sequence[str] | None) -> tuple[CheckGroup, ...]:
     """
     Return the groups that ``only`` names, as GROUP or as GROUP.ENTRY; all for None.
 
@@ -65,7 +65,7 @@ def chosen(groups: Sequence[Group], only: Sequence[str] | None) -> tuple[Group, 
 
 
 def validated(
-        groups: Sequence[Group], only: Sequence[str] | None = None,
+        groups: Sequence[CheckGroup], only: Sequence[str] | None = None,
         progress: Progress | None = None) -> tuple[GroupResult, ...]:
     """
     Run the groups and return their results in order, of the entries ``only`` names.
@@ -86,7 +86,7 @@ def validated(
     return tuple(only_of(results[group.name], only or ()) for group in groups)
 
 
-def run_group(group: Group) -> GroupResult:
+def run_group(group: CheckGroup) -> GroupResult:
     """
     Run one group in this process and draw its figures.
 

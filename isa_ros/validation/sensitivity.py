@@ -16,7 +16,7 @@ from typing import NamedTuple
 from isa_ros.errors import ParameterError, SimulationDiverged
 from isa_ros.text.progress import Progress
 from isa_ros.validation.actuators import Actuators, Change, SUPPLY_PRESSURE
-from isa_ros.validation.entry import Group
+from isa_ros.validation.entry import CheckGroup
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.workers import in_workers
 
@@ -106,7 +106,7 @@ class PerturbationEffect(NamedTuple):
 
 def sensitivity(
         perturbations: Sequence[Perturbation] = PERTURBATIONS,
-        groups: Sequence[Group] = GROUPS,
+        groups: Sequence[CheckGroup] = GROUPS,
         progress: Progress | None = None) -> tuple[PerturbationEffect, ...]:
     """
     Run groups as shipped and each perturbation in its own, in two worker processes.
@@ -119,7 +119,7 @@ def sensitivity(
         A worker process was lost.
 
     """
-    def those(names: Iterable[str]) -> tuple[Group, ...]:
+    def those(names: Iterable[str]) -> tuple[CheckGroup, ...]:
         return tuple(group for group in groups if group.name in names)
     used = {name for each in perturbations for name in each.groups}
     calls = [partial(outcome, those(used), None), *(
@@ -136,7 +136,7 @@ class Verdicts(NamedTuple):
     refused: str = ''
 
 
-def outcome(groups: Sequence[Group], change: Change | None) -> Verdicts:
+def outcome(groups: Sequence[CheckGroup], change: Change | None) -> Verdicts:
     """Return whether each entry is reached; those of a group that diverges are missing."""
     found: dict[str, bool] = {}
     for group in groups:

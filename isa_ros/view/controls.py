@@ -27,7 +27,7 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.requests import fill_command, refuse_without_effort
 from isa_ros.surroundings.emergency_line import EMERGENCY_STOP
 from isa_ros.surroundings.surroundings import Surroundings
-from isa_ros.view.faults import Faults
+from isa_ros.view.faults import FaultChoices
 from isa_ros.view.orders import FAULT, Order, REQUEST, SETPOINT, TUNE
 import numpy as np
 
@@ -65,7 +65,7 @@ class Controls:
             self, run: RunConfig, group: ActuatorGroup, surroundings: Surroundings) -> None:
         self._actuators = {own.name: own for own in group.actuators}
         self._surroundings = surroundings
-        self._faults = Faults(run, self._actuators, surroundings)
+        self._faults = FaultChoices(run, self._actuators, surroundings)
         self._lines = [
             name for name in surroundings.changing if name.startswith(f'{EMERGENCY_STOP}.')]
         self._starts = dict(zip(self._actuators, surroundings.starts()['position'].tolist()))

@@ -20,7 +20,7 @@ from isa_ros.surroundings.surroundings import Surroundings
 Values = Mapping[str, float]
 
 
-class Faults:
+class FaultChoices:
     """The faults of the actuators and supplies of a run; ``actuators`` are by name."""
 
     def __init__(self, run: RunConfig, actuators: Mapping[str, SmartActuator],

@@ -33,7 +33,7 @@ class Shape(NamedTuple):
     """Of the page's colours."""
 
 
-class Motion(Enum):
+class SceneMotion(Enum):
     """How the channels of a node move it after its place and rotation."""
 
     FIXED = 'fixed'
@@ -46,7 +46,7 @@ class Motion(Enum):
     """x, y, z, and a quaternion w, x, y, z."""
 
 
-class Node(NamedTuple):
+class SceneNode(NamedTuple):
     """A frame in the axes of its parent, which stands before it."""
 
     name: str
@@ -56,14 +56,14 @@ class Node(NamedTuple):
     rotation: Floats
     """(3, 3)."""
     shapes: Sequence[Shape]
-    motion: Motion = Motion.FIXED
+    motion: SceneMotion = SceneMotion.FIXED
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     channels: Sequence[str] = ()
     reach: float = 0.0
     """How far it slides, m, so that all of it is in view."""
 
 
-def tree_of(nodes: Sequence[Node], place_of: dict[str, int]) -> list[dict[str, Any]]:
+def tree_of(nodes: Sequence[SceneNode], place_of: dict[str, int]) -> list[dict[str, Any]]:
     """Return nodes for JSON; ``place_of`` are the places of the channels in a frame."""
     return [{
         'name': node.name, 'parent': node.parent, 'place': _numbers(node.place),

@@ -46,7 +46,7 @@ class Order(NamedTuple):
     """By which the page knows the answer."""
 
 
-class Answer(NamedTuple):
+class OrderAnswer(NamedTuple):
     """What became of an order."""
 
     number: int

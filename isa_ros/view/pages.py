@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.view.nodes import Node, tree_of as nodes_tree
+from isa_ros.view.nodes import SceneNode, tree_of as nodes_tree
 from isa_ros.view.panels import channels_of, Group, tree_of as groups_tree
 
 
@@ -14,7 +14,7 @@ class Page(NamedTuple):
 
     title: str
     groups: Sequence[Group]
-    nodes: Sequence[Node]
+    nodes: Sequence[SceneNode]
 
     @property
     def channels(self) -> list[str]:

@@ -13,7 +13,7 @@ from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.surroundings.messages import Force
-from isa_ros.view.nodes import Node
+from isa_ros.view.nodes import SceneNode
 import numpy as np
 
 _DEGREE = float(np.radians(1.0))
@@ -38,7 +38,7 @@ def recorded(groups: Iterable[Group], channels: Container[str]) -> list[Group]:
     return [group for group in found if group.panels]
 
 
-def channels_of(groups: Iterable[Group], nodes: Iterable[Node]) -> list[str]:
+def channels_of(groups: Iterable[Group], nodes: Iterable[SceneNode]) -> list[str]:
     """Return the channels of groups and scene, each once."""
     names = [curve.signal for group in groups for panel in group.panels for curve in panel.curves]
     names += [channel for node in nodes for channel in node.channels]

@@ -9,7 +9,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.view.frames import frame_of, MOST, PERIOD_S, Samples
 from isa_ros.view.hub import Hub
-from isa_ros.view.orders import Answer, Order, PAUSE, SEEK, SPEED, STEP, ticks_text
+from isa_ros.view.orders import Order, OrderAnswer, PAUSE, SEEK, SPEED, STEP, ticks_text
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of, recorded
 from isa_ros.view.scene import scene_of
@@ -113,7 +113,7 @@ class Player:
             self._due, self._is_paused = float(self._last), True
         return Samples(begin, every, self._tracks.at(ticks))
 
-    def _carry_out(self, order: Order) -> Answer:
+    def _carry_out(self, order: Order) -> OrderAnswer:
         tick = max(self._tick, self._first)
         if order.what == PAUSE:
             self._is_paused = order.value
@@ -131,8 +131,8 @@ class Player:
             self._seek(round(order.value / self._step))
             text = f't = {self._due * self._step:g} s'
         else:
-            return Answer(order.number, False, f'{order.what}: a bag is only played', tick)
-        return Answer(order.number, True, text, tick)
+            return OrderAnswer(order.number, False, f'{order.what}: a bag is only played', tick)
+        return OrderAnswer(order.number, True, text, tick)
 
     def _seek(self, tick: int) -> None:
         """Go on from a tick of the bag."""

@@ -30,7 +30,7 @@ from isa_ros.view.controls import Controls
 from isa_ros.view.frames import frame_of, Gathering, PERIOD_S
 from isa_ros.view.hub import Hub
 from isa_ros.view.orders import (
-    Answer, Order, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP, ticks_text)
+    Order, OrderAnswer, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP, ticks_text)
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of
 from isa_ros.view.scene import scene_of
@@ -56,7 +56,7 @@ class LiveRun(RowSink):
         self._controls = Controls(run, group, surroundings)
         self._gathering = Gathering(len(self._channels))
         self._columns: Columns | None = None
-        self._answers: list[Answer] = []
+        self._answers: list[OrderAnswer] = []
         self._now, self._next = now, 0.0
         self.hub = Hub(page.tree(
             run, 'run', None if n_ticks is None else n_ticks * run.step_ns / NS_PER_SECOND,
@@ -97,15 +97,15 @@ class LiveRun(RowSink):
             behind=0.0 if coordinator.is_paused else pace.lateness(coordinator.t_ns),
             devices=_devices(coordinator.rows), **self._controls.state()))
 
-    def _answer(self, order: Order, coordinator: Coordinator) -> Answer:
+    def _answer(self, order: Order, coordinator: Coordinator) -> OrderAnswer:
         tick = coordinator.ticks
         try:
             text = self._carry_out(order, coordinator)
         except IsaError as error:
             if error.exit_code != IsaError.exit_code:   # the run itself has failed
                 raise
-            return Answer(order.number, False, str(error), tick)
-        return Answer(order.number, True, text, tick)
+            return OrderAnswer(order.number, False, str(error), tick)
+        return OrderAnswer(order.number, True, text, tick)
 
     def _carry_out(self, order: Order, coordinator: Coordinator) -> str:
         """Carry out an order; return what was done."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.config.robot_description import description_of
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.leg_config import LegConfig
@@ -18,7 +18,7 @@ from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.messages import JointStates, Odometry
-from isa_ros.view.nodes import Floats, Motion, Node, Shape, WORLD
+from isa_ros.view.nodes import Floats, SceneMotion, SceneNode, Shape, WORLD
 from isa_ros.view.urdf_nodes import Moved, urdf_nodes
 import numpy as np
 
@@ -30,9 +30,9 @@ _ALONG_Y = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 _ROD_COLOR, _TIP_COLOR = 1, 2
 
 
-def scene_of(run: RunConfig, folder: Path) -> list[Node]:
+def scene_of(run: RunConfig, folder: Path) -> list[SceneNode]:
     """Return the nodes of a run whose run file is in ``folder``, where URDFs may be."""
-    nodes: list[Node] = []
+    nodes: list[SceneNode] = []
     drawn: set[str] = set()
     y = 0.0
     for body in run.bodies:
@@ -50,7 +50,8 @@ def scene_of(run: RunConfig, folder: Path) -> list[Node]:
 
 
 def _described(
-        run: RunConfig, body: BodyConfig, folder: Path, place: Floats, first: int) -> list[Node]:
+        run: RunConfig, body: BodyConfig, folder: Path, place: Floats,
+        first: int) -> list[SceneNode]:
     """Return the nodes of a body; none without a URDF, or where its file cannot be read here."""
     try:
         if isinstance(body, LegConfig):
@@ -78,22 +79,22 @@ def _moved(run: RunConfig, body: BodyConfig, place: Floats) -> Moved:
     return Moved(joints, root, place)
 
 
-def _width(actuator: ActuatorConfig) -> float:
+def _width(actuator: ConfiguredActuator) -> float:
     """Return the radius of what is drawn of an actuator, m."""
     return _ROTOR if actuator.sheet.is_rotary else _THICK * actuator.sheet.plant.drive.stroke
 
 
-def _alone(actuator: ActuatorConfig, place: Floats, first: int) -> Iterator[Node]:
+def _alone(actuator: ConfiguredActuator, place: Floats, first: int) -> Iterator[SceneNode]:
     """Yield the housing of an actuator and what moves in it."""
     width, name, here = _width(actuator), actuator.name, np.zeros(3)
     if actuator.sheet.is_rotary:
         disc = Shape('cylinder', (width, width), here, _ALONG_Y)
         arm = Shape('box', (2.0 * width, 0.3 * width, 0.3 * width),
                     np.array([width, -0.7 * width, 0.0]), np.eye(3), _TIP_COLOR)
-        yield Node(name, WORLD, place, np.eye(3), [disc])
+        yield SceneNode(name, WORLD, place, np.eye(3), [disc])
         # an angle > 0 lifts the arm: about -y
-        yield Node(name, first, here, np.eye(3), [arm], Motion.TURN, (0.0, -1.0, 0.0),
-                   [f'{name}.position'])
+        yield SceneNode(name, first, here, np.eye(3), [arm], SceneMotion.TURN, (0.0, -1.0, 0.0),
+                        [f'{name}.position'])
         return
     stroke = actuator.sheet.plant.drive.stroke
     barrel = Shape('cylinder', (width, 1.1 * stroke), np.array([0.55 * stroke, 0.0, 0.0]),
@@ -102,6 +103,6 @@ def _alone(actuator: ActuatorConfig, place: Floats, first: int) -> Iterator[Node
                 _ALONG_X, _ROD_COLOR)
     eye = Shape('box', (width, width, width), np.array([1.2 * stroke, 0.0, 0.0]), np.eye(3),
                 _TIP_COLOR)
-    yield Node(name, WORLD, place, np.eye(3), [barrel])
-    yield Node(name, first, here, np.eye(3), [rod, eye], Motion.SLIDE, (1.0, 0.0, 0.0),
-               [f'{name}.position'], stroke)
+    yield SceneNode(name, WORLD, place, np.eye(3), [barrel])
+    yield SceneNode(name, first, here, np.eye(3), [rod, eye], SceneMotion.SLIDE, (1.0, 0.0, 0.0),
+                    [f'{name}.position'], stroke)

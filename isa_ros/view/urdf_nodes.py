@@ -11,10 +11,11 @@ from xml.etree.ElementTree import Element
 from isa_ros.config.robots.urdf_numbers import axis_of, number_of, numbers_of, origin_of
 from isa_ros.config.robots.urdf_text import element_of
 from isa_ros.errors import ConfigError
-from isa_ros.view.nodes import Floats, Motion, Node, Shape, WORLD
+from isa_ros.view.nodes import Floats, SceneMotion, SceneNode, Shape, WORLD
 import numpy as np
 
-_MOTIONS = {'revolute': Motion.TURN, 'continuous': Motion.TURN, 'prismatic': Motion.SLIDE}
+_MOTIONS = {'revolute': SceneMotion.TURN, 'continuous': SceneMotion.TURN,
+            'prismatic': SceneMotion.SLIDE}
 _SIZES = {'box': ('size', 3), 'cylinder': ('radius length', 2), 'sphere': ('radius', 1)}
 
 
@@ -29,7 +30,7 @@ class Moved(NamedTuple):
     """Of its world in that of the page, m, (3,)."""
 
 
-def urdf_nodes(text: str, name: str, moved: Moved, first: int) -> list[Node]:
+def urdf_nodes(text: str, name: str, moved: Moved, first: int) -> list[SceneNode]:
     """
     Return the nodes of a URDF, of which the root is the ``first`` in the list of all.
 
@@ -52,16 +53,16 @@ def urdf_nodes(text: str, name: str, moved: Moved, first: int) -> list[Node]:
     roots = [link for link in links if link not in children]
     if len(roots) != 1:
         raise ConfigError(f'{name}: has {len(roots)} links without a parent, must have one')
-    found = [Node(roots[0], WORLD, moved.place, np.eye(3), ())]
+    found = [SceneNode(roots[0], WORLD, moved.place, np.eye(3), ())]
     if moved.root:
-        found.append(Node(roots[0], first, np.zeros(3), np.eye(3), (), Motion.FREE,
-                          channels=moved.root))
+        found.append(SceneNode(roots[0], first, np.zeros(3), np.eye(3), (), SceneMotion.FREE,
+                               channels=moved.root))
     _add(found, links, by_parent, moved, first, name)
     return found
 
 
-def _add(found: list[Node], links: Mapping[str, Element], by_parent: Mapping[str, list[Element]],
-         moved: Moved, first: int, name: str) -> None:
+def _add(found: list[SceneNode], links: Mapping[str, Element],
+         by_parent: Mapping[str, list[Element]], moved: Moved, first: int, name: str) -> None:
     """Add the links below the last node, and its own shapes."""
     waiting = [len(found) - 1]
     while waiting:
@@ -75,8 +76,8 @@ def _add(found: list[Node], links: Mapping[str, Element], by_parent: Mapping[str
             where = f'{name}: joint {joint.get("name", "")}'
             place, rotation = origin_of(joint, where)
             motion, axis, channels = _motion(joint, moved, where)
-            found.append(Node(_end(joint, 'child'), first + at, place, rotation, (), motion,
-                              axis, channels))
+            found.append(SceneNode(_end(joint, 'child'), first + at, place, rotation, (), motion,
+                                   axis, channels))
             waiting.append(len(found) - 1)
 
 
@@ -87,12 +88,12 @@ def _end(joint: Element, side: str) -> str:
 
 def _motion(
         joint: Element, moved: Moved, where: str
-        ) -> tuple[Motion, Sequence[float], Sequence[str]]:
+        ) -> tuple[SceneMotion, Sequence[float], Sequence[str]]:
     """Return how a joint moves, its axis of length 1, and its channels."""
-    motion = _MOTIONS.get(joint.get('type', ''), Motion.FIXED)
+    motion = _MOTIONS.get(joint.get('type', ''), SceneMotion.FIXED)
     channel = moved.joints.get(joint.get('name', ''))
-    if motion is Motion.FIXED or channel is None:
-        return Motion.FIXED, (0.0, 0.0, 1.0), ()
+    if motion is SceneMotion.FIXED or channel is None:
+        return SceneMotion.FIXED, (0.0, 0.0, 1.0), ()
     return motion, axis_of(joint, where).tolist(), (channel,)
 
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from isa_ros.core.bound import table_of
-from isa_ros.export.layout import ALIGNED, Layout, Word
+from isa_ros.export.layout import ALIGNED, MemoryLayout, Word
 import numpy as np
 import pytest
 
@@ -37,7 +37,7 @@ def memory():
 
 def test_arrays_that_share_memory_share_it_in_the_block():
     own = memory()
-    layout = Layout([own])
+    layout = MemoryLayout([own])
     assert layout.place(own.first) == 0 and layout.place(own.first[2:]) == 8
     assert layout.place(own.below.numbers) == 16 and layout.place(own.below.rows) == 32
     assert layout.place(own.below.rows['n'][1:]) == 56
@@ -48,22 +48,22 @@ def test_places_follow_the_order_of_the_arrays():
     """Not that of their addresses, which differ in each process."""
     arrays = [np.zeros(2) for _ in range(8)]
     for order in (arrays, arrays[::-1]):
-        layout = Layout([tuple(order)])
+        layout = MemoryLayout([tuple(order)])
         assert [layout.place(array) for array in order] == [16 * k for k in range(8)]
 
 
 def test_neighbours_and_parts():
     """Arrays that only touch are apart; a part of one does not end it."""
     own = np.arange(6.0)
-    layout = Layout([(own[:1], own[1:2])])
+    layout = MemoryLayout([(own[:1], own[1:2])])
     assert layout.place(own[1:2]) == 16 and layout.size == 32
-    layout = Layout([(own[:4], own[1:2])])
+    layout = MemoryLayout([(own[:4], own[1:2])])
     assert layout.place(own[3:4]) == 24 and layout.size == 32
 
 
 def test_an_array_that_is_not_in_the_block():
     own = np.arange(6.0)
-    layout = Layout([(own[1:4],)])
+    layout = MemoryLayout([(own[1:4],)])
     assert layout.place(own[1:3]) == 0 and layout.place(own[3:4]) == 16
     for other in (np.zeros(1), own[:2], own[3:5], own[4:]):
         with pytest.raises(ValueError, match='an array of float64 is not in the block'):
@@ -72,7 +72,7 @@ def test_an_array_that_is_not_in_the_block():
 
 def test_the_table_is_that_of_a_bound_kernel():
     own = memory()
-    layout = Layout([own])
+    layout = MemoryLayout([own])
     table, addresses = list(layout.table(own)), table_of(own)
     assert len(table) == len(addresses)
     first = own.first.ctypes.data
@@ -86,7 +86,7 @@ def test_the_table_is_that_of_a_bound_kernel():
 
 def test_the_image_is_what_the_arrays_hold():
     own = memory()
-    layout = Layout([own, own])
+    layout = MemoryLayout([own, own])
     image = layout.image().view(np.uint8)
     assert image.nbytes == layout.size
     for array in (own.first, own.below.rows, own.below.numbers, own.last):

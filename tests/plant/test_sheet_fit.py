@@ -6,7 +6,7 @@ from isa_ros.config.listing import describe
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.plant.plant import LinearPlant
-from isa_ros.plant.sheet_fit import Fit, fits
+from isa_ros.plant.sheet_fit import fits, SheetFit
 from isa_ros.plant.spool import DataSheetSpool
 from isa_ros.plant.stated_curves import SidesFlow, StatedLeakage
 import pytest
@@ -21,7 +21,7 @@ def plant() -> LinearPlant:
     return load_run(find(RIG, CONFIG)).actuator('shut').sheet.plant
 
 
-def by_name(found: list[Fit]) -> dict[str, Fit]:
+def by_name(found: list[SheetFit]) -> dict[str, SheetFit]:
     return {one.what.split(',')[0] if 'spool' not in one.what else one.what: one for one in found}
 
 

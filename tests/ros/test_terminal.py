@@ -10,8 +10,8 @@ from isa_ros.core.device import REFERENCES
 from isa_ros.core.signals import GAINS_OF_COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.terminal.echo import message_text, message_type
-from isa_ros.nodes.terminal.parameters import Change, change_of
-from isa_ros.nodes.terminal.setpoints import is_new, REQUESTS, Wanted
+from isa_ros.nodes.terminal.parameters import change_of, ParameterChange
+from isa_ros.nodes.terminal.setpoints import GivenSetpoint, is_new, REQUESTS
 from isa_ros.nodes.terminal.visitor import visiting
 import pytest
 from sensor_msgs.msg import JointState
@@ -154,12 +154,12 @@ def test_discovery_that_is_off_is_refused(
 
 
 def test_a_setpoint_has_the_entries_of_what_was_given() -> None:
-    wanted = Wanted(0.4, None, 70.0, {'damping': 8.0}, {})
+    wanted = GivenSetpoint(0.4, None, 70.0, {'damping': 8.0}, {})
     assert wanted.message('a/b') == JointState(
         name=['a/b', 'a/b/damping'], position=[0.4, 8.0], effort=[70.0])
-    assert Wanted(None, None, None, {}, {'spool': 3e-4}).message('b') == JointState(
+    assert GivenSetpoint(None, None, None, {}, {'spool': 3e-4}).message('b') == JointState(
         name=['b/spool'], position=[3e-4])
-    effort_alone = Wanted(None, 0.2, 5.0, {}, {}).message('b')
+    effort_alone = GivenSetpoint(None, 0.2, 5.0, {}, {}).message('b')
     assert list(effort_alone.velocity) == [0.2] and effort_alone.position[0] != (
         effort_alone.position[0])
 
@@ -184,6 +184,6 @@ def test_a_text_of_a_message_does_nothing_to_the_terminal() -> None:
 
 
 def test_a_change_may_hold_an_equals_sign() -> None:
-    assert change_of('a.b=c=d') == Change('a.b', 'c=d')
-    assert change_of('a.b') == Change('a.b', None)
-    assert change_of('a.b=') == Change('a.b', '')
+    assert change_of('a.b=c=d') == ParameterChange('a.b', 'c=d')
+    assert change_of('a.b') == ParameterChange('a.b', None)
+    assert change_of('a.b=') == ParameterChange('a.b', '')

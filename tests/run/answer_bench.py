@@ -5,7 +5,7 @@ import socket
 import struct
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.nodes.lockstep.sockets import LARGEST
@@ -24,7 +24,7 @@ FAR_NS = 2**62          # of the host's clock: never due
 
 
 def made(is_linked: bool = False) -> SmartActuator:
-    config: ActuatorConfig = default_actuator('isa_v5', 'kfe')
+    config: ConfiguredActuator = default_actuator('isa_v5', 'kfe')
     sheet = replace(config.sheet, link=link_of(delay_cycles=2.0)) if is_linked else config.sheet
     actuator = SmartActuator(replace(config, sheet=sheet, load=None), DEFAULT_TIMING)
     actuator.start(0.01, 0.0, 20.7e6, 0.0)

@@ -3,7 +3,7 @@
 from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, Drawing, Entry, Findings, Group, INPUT, Observation, OWN, PAPER, WORDS)
+    around, CheckGroup, Drawing, Entry, Findings, INPUT, Observation, OWN, PAPER, WORDS)
 from isa_ros.validation.plots import stacked
 
 
@@ -55,12 +55,12 @@ def diverged() -> Findings:
     raise SimulationDiverged(1_000_000, 'spool', float('nan'))
 
 
-GOOD = Group('good', 'Good ones', good)
-MISSED = Group('missed', 'Missed ones', missed, is_long=True)
-GAINS = Group('gains', 'Two sets of gains', both_gains)
-KINDS = Group('kinds', 'Every kind', every_kind)
-REFUSED = Group('refused', 'Refused', refused)
-DIVERGED = Group('diverged', 'Diverged', diverged)
+GOOD = CheckGroup('good', 'Good ones', good)
+MISSED = CheckGroup('missed', 'Missed ones', missed, is_long=True)
+GAINS = CheckGroup('gains', 'Two sets of gains', both_gains)
+KINDS = CheckGroup('kinds', 'Every kind', every_kind)
+REFUSED = CheckGroup('refused', 'Refused', refused)
+DIVERGED = CheckGroup('diverged', 'Diverged', diverged)
 
 
 def stiff(actuators: Actuators = SHIPPED) -> Findings:
@@ -73,4 +73,4 @@ def stiff(actuators: Actuators = SHIPPED) -> Findings:
     return Findings((entry('bar', ours), entry('hidden', 1.0), entry('late', 2.0 / ours)))
 
 
-STIFF = Group('stiff', 'A stiffness', stiff)
+STIFF = CheckGroup('stiff', 'A stiffness', stiff)

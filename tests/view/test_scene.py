@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import isa_ros
-from isa_ros.view.nodes import Motion
+from isa_ros.view.nodes import SceneMotion
 from isa_ros.view.scene import scene_of
 import pytest
 
@@ -16,7 +16,7 @@ def scene(name, folder=FOLDER):
 
 def test_a_leg_is_moved_by_its_joints_and_its_slider():
     nodes = scene('leg')
-    moved = {node.name: node.channels for node in nodes if node.motion is not Motion.FIXED}
+    moved = {node.name: node.channels for node in nodes if node.motion is not SceneMotion.FIXED}
     assert moved == {'slider_link': ('body.height',), 'hip': ('body.position[0]',),
                      'thigh': ('body.position[1]',), 'calf': ('body.position[2]',)}
     assert {node.name for node in nodes if node.shapes} == {
@@ -25,11 +25,11 @@ def test_a_leg_is_moved_by_its_joints_and_its_slider():
 
 def test_a_free_robot_moves_as_its_odometry_says():
     nodes = scene('quadruped')
-    free, = (node for node in nodes if node.motion is Motion.FREE)
+    free, = (node for node in nodes if node.motion is SceneMotion.FREE)
     assert free.name == 'trunk' and list(free.channels) == [
         *(f'body.position[{k}]' for k in range(3)),
         *(f'body.orientation[{k}]' for k in range(4))]
-    assert sum(node.motion is Motion.TURN for node in nodes) == 12
+    assert sum(node.motion is SceneMotion.TURN for node in nodes) == 12
 
 
 @pytest.mark.parametrize('name', ['crane', 'two_joint_leg', 'hyq_quadruped', 'hyq_leg'])
@@ -44,7 +44,7 @@ def test_lone_actuators_stand_side_by_side():
     nodes = scene('press')
     barrel, rod = nodes
     assert (rod.motion, rod.axis, rod.channels) == (
-        Motion.SLIDE, (1.0, 0.0, 0.0), ['slide.position'])
+        SceneMotion.SLIDE, (1.0, 0.0, 0.0), ['slide.position'])
     stroke = isa_ros.load('press').configuration.actuators[0].sheet.plant.drive.stroke
     assert rod.reach == stroke == 0.25
     assert barrel.shapes[0].size[1] == pytest.approx(1.1 * stroke) and barrel.place[2] > 0.0
@@ -53,7 +53,7 @@ def test_lone_actuators_stand_side_by_side():
     assert 0.0 < end < 1.1 * stroke < rod.shapes[1].place[0]
     arm = scene('rig_rotary')[1]
     assert (arm.motion, arm.axis, arm.channels) == (
-        Motion.TURN, (0.0, -1.0, 0.0), ['rotor.position'])
+        SceneMotion.TURN, (0.0, -1.0, 0.0), ['rotor.position'])
 
 
 def test_robots_stand_apart():

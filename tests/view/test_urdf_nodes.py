@@ -1,7 +1,7 @@
 """A URDF as a tree of frames: places, axes, shapes; what moves, and what cannot be drawn."""
 
 from isa_ros.errors import ConfigError
-from isa_ros.view.nodes import Motion, tree_of, WORLD
+from isa_ros.view.nodes import SceneMotion, tree_of, WORLD
 from isa_ros.view.urdf_nodes import Moved, urdf_nodes
 import numpy as np
 import pytest
@@ -35,9 +35,10 @@ def test_links_are_frames_below_their_parents():
     assert boom.place.tolist() == [0.1, 0.2, 0.3]
     assert boom.rotation.tolist() == [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     assert (boom.motion, boom.axis, boom.channels) == (
-        Motion.TURN, [0.0, 0.6, 0.8], ('body.lift',))
-    assert (tip.motion, tip.axis, tip.channels) == (Motion.SLIDE, [0.0, 0.0, 1.0], ('body.out',))
-    assert (plate.motion, plate.channels) == (Motion.FIXED, ())
+        SceneMotion.TURN, [0.0, 0.6, 0.8], ('body.lift',))
+    assert (tip.motion, tip.axis, tip.channels) == (
+        SceneMotion.SLIDE, [0.0, 0.0, 1.0], ('body.out',))
+    assert (plate.motion, plate.channels) == (SceneMotion.FIXED, ())
 
 
 def test_shapes_have_place_and_size_and_meshes_are_left_out():
@@ -54,9 +55,9 @@ def test_shapes_have_place_and_size_and_meshes_are_left_out():
 def test_a_joint_without_a_channel_rests_and_a_free_root_moves():
     pose = [f'body.pose[{k}]' for k in range(7)]
     nodes = urdf_nodes(ARM, 'arm', moved(pose), 2)
-    assert [node.motion for node in nodes[:2]] == [Motion.FIXED, Motion.FREE]
+    assert [node.motion for node in nodes[:2]] == [SceneMotion.FIXED, SceneMotion.FREE]
     assert nodes[1].parent == 2 and nodes[1].channels == pose
-    assert {node.motion for node in nodes[2:]} == {Motion.FIXED}
+    assert {node.motion for node in nodes[2:]} == {SceneMotion.FIXED}
     assert {node.parent for node in nodes[2:] if node.name in ('boom', 'plate')} == {3}
 
 
@@ -64,7 +65,7 @@ def test_a_joint_without_an_axis_turns_about_x():
     text = ARM.replace('<axis xyz="0 3 4"/>', '')
     boom = next(node for node in urdf_nodes(text, 'arm', moved(lift='a'), 0)
                 if node.name == 'boom')
-    assert (boom.motion, boom.axis) == (Motion.TURN, [1.0, 0.0, 0.0])
+    assert (boom.motion, boom.axis) == (SceneMotion.TURN, [1.0, 0.0, 0.0])
 
 
 def test_nodes_are_told_in_json_by_the_places_of_their_channels():

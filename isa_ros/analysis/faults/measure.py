@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from isa_ros.analysis.faults.recorded import (
     BIT_SETS, DEVICE, EXACT, largest_error, recorded, Signals, STATE, STEP_S, SUPPLY)
-from isa_ros.analysis.faults.rigs import common_rigs, DURATION_S, Rig, rig_of
+from isa_ros.analysis.faults.rigs import common_rigs, DURATION_S, FaultRig, rig_of
 from isa_ros.config.models.fault_catalogue import fault_catalogue, named_fault, NamedFault
 from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import BITS
@@ -131,7 +131,7 @@ def outcomes(
     return found
 
 
-def _outcome(rig: Rig, fault: NamedFault, sound: Signals) -> FaultEffect:
+def _outcome(rig: FaultRig, fault: NamedFault, sound: Signals) -> FaultEffect:
     try:
         faulty = recorded(
             rig, ({**rig.tree(fault, BEGIN_S), 'until_s': END_S},), DURATION_S, CLEAR_S)
@@ -187,7 +187,7 @@ def _noticed(
     return sorted(found, key=lambda own: own.after_s)
 
 
-def _resolution(rig: Rig) -> dict[str, float]:
+def _resolution(rig: FaultRig) -> dict[str, float]:
     """Return the step of the converter of every signal, SI."""
     own = sensors_record(rig.run.configuration.actuator(rig.actuator).sheet.plant.sensors)
     steps = {'position': own.encoder, 'pressure_a': own.pressure_step,
@@ -196,6 +196,6 @@ def _resolution(rig: Rig) -> dict[str, float]:
             for name in (*CHANNELS, SUPPLY)}
 
 
-def _units(rig: Rig) -> dict[str, str]:
+def _units(rig: FaultRig) -> dict[str, str]:
     is_rotary = rig.run.configuration.actuator(rig.actuator).sheet.is_rotary
     return {SUPPLY: 'Pa'} | units_of(SAMPLE_FIELDS, is_rotary)

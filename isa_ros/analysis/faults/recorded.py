@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from isa_ros.analysis.faults.rigs import Rig
+from isa_ros.analysis.faults.rigs import FaultRig
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.signals import (
     CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, LOAD_REPLY, SAMPLE)
@@ -28,7 +28,7 @@ Signals = Mapping[str, NDArray[np.float64]]
 
 
 def recorded(
-        rig: Rig, faults: Sequence[Tree], duration_s: float,
+        rig: FaultRig, faults: Sequence[Tree], duration_s: float,
         clear_s: float | None = None) -> Signals:
     """
     Return the signals of a run with some faults: `SUPPLY`, `CHANNELS`, `DEVICE` and `EXACT`.

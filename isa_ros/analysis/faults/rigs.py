@@ -38,7 +38,7 @@ _PARTS = {
     'dump': 'emptied', 'filter': 'return_filter'}
 
 
-class Rig(NamedTuple):
+class FaultRig(NamedTuple):
     """A run, and who has a fault in it."""
 
     run: Run
@@ -76,32 +76,32 @@ ABOUT: Mapping[str, str] = {
 """What the rigs of parts do, by name."""
 
 
-def rig_of(name: str) -> Rig:
+def rig_of(name: str) -> FaultRig:
     """Return one of the rigs of `ABOUT`."""
     if name in ('cushion_a', 'cushion_b'):
         start, end, back = (60.0, 0.0, 0.1) if name == 'cushion_a' else (190.0, 0.25, 0.15)
-        return Rig(_run('press', {'actuators.slide.initial_position_mm': start}, {'slide': [
+        return FaultRig(_run('press', {'actuators.slide.initial_position_mm': start}, {'slide': [
             {'t_s': 0.0, 'position': 'hold'},
             {'t_s': 0.37, 'position': end, 'stiffness': 2e6, 'damping': 1e4},
             {'t_s': 0.75, 'position': back}]}), 'slide')
     if name == 'return_spring':
-        return Rig(_run('lift_table', {'actuators.table.initial_position_mm': 100.0}, {'table': [
-            {'t_s': 0.0, 'position': 'hold', 'stiffness': 3e5, 'damping': 1e4},
-            {'t_s': 0.6, 'position': 0.06}]}), 'table')
+        held = {'t_s': 0.0, 'position': 'hold', 'stiffness': 3e5, 'damping': 1e4}
+        return FaultRig(_run('lift_table', {'actuators.table.initial_position_mm': 100.0}, {
+            'table': [held, {'t_s': 0.6, 'position': 0.06}]}), 'table')
     if name in ('hoses', 'holding'):
         changes = {} if name == 'hoses' else {
             'actuators.boom.parameters.plant.holding_b': _COUNTERBALANCE}
-        return Rig(_run(
+        return FaultRig(_run(
             'rig_hoses' if name == 'hoses' else 'rig_counterbalance', changes, {'boom': [
                 {'t_s': 0.0, 'position': 'hold', 'effort': 12000.0, 'stiffness': 4e5,
                  'damping': 1e4, 'sine': _SINE}]}), 'boom')
     if name == 'circuit':
-        return Rig(_run('pump_station', {'supplies.station.parts.spill': _UNLOADING}, {
+        return FaultRig(_run('pump_station', {'supplies.station.parts.spill': _UNLOADING}, {
             own: [{'t_s': 0.0, 'position': 'hold', 'sine': {
                 'amplitude': 0.03, 'frequency_hz': 1.5}}] for own in ('left', 'right')}),
             'left', 'station', _PARTS)
     key = 'actuators.ram.parameters.plant'
-    return Rig(load(CONFIG, MOTION).replace(
+    return FaultRig(load(CONFIG, MOTION).replace(
         {f'{key}.block_valve': {'kind': 'poppet'}} if name == 'block_valves' else
         {f'{key}.valve': {'hysteresis_percent': 3.0, 'threshold_percent': 0.5}}), 'ram')
 
@@ -118,6 +118,7 @@ MOTION: Tree = {
 """20 mm at 2 Hz about mid stroke; the piston is fastest where faults begin."""
 
 
-def common_rigs() -> tuple[Rig, Rig]:
+def common_rigs() -> tuple[FaultRig, FaultRig]:
     """Return that of `common_faults`, without and with a link."""
-    return Rig(load(CONFIG, MOTION), 'ram'), Rig(load({**CONFIG, 'link': LINK}, MOTION), 'ram')
+    return (FaultRig(load(CONFIG, MOTION), 'ram'),
+            FaultRig(load({**CONFIG, 'link': LINK}, MOTION), 'ram'))

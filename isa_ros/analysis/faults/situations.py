@@ -13,7 +13,7 @@ from typing import Any
 from isa_ros.analysis.faults.measure import is_of_link
 from isa_ros.analysis.faults.recorded import (
     BIT_SETS, EXACT, in_mm, in_newtons, largest_error, recorded, Signals, STEP_S)
-from isa_ros.analysis.faults.rigs import CONFIG, LINK, Rig
+from isa_ros.analysis.faults.rigs import CONFIG, FaultRig, LINK
 from isa_ros.config.models.fault_catalogue import common_faults, named_fault, NamedFault
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
@@ -94,8 +94,8 @@ def situations(
             'initial_position_mm': 50.0}}}
         scenario: Tree = {
             'name': 'situation', 'duration_s': DURATION_S, 'tracks': {'ram': [track]}}
-        plain = Rig(load(config, scenario), 'ram')
-        linked = Rig(load({**config, 'link': LINK}, scenario), 'ram')
+        plain = FaultRig(load(config, scenario), 'ram')
+        linked = FaultRig(load({**config, 'link': LINK}, scenario), 'ram')
         sound = [recorded(rig, (), DURATION_S) for rig in (plain, linked)]
         for j, fault in enumerate(chosen):
             if report is not None:
@@ -117,7 +117,7 @@ def _chosen(names: Sequence[str] | None) -> list[NamedFault]:
     return found
 
 
-def _seen(fault: NamedFault, situation: str, rig: Rig, sound: Signals) -> Seen:
+def _seen(fault: NamedFault, situation: str, rig: FaultRig, sound: Signals) -> Seen:
     try:
         faulty = recorded(rig, (rig.tree(fault, BEGIN_S),), DURATION_S)
     except SimulationDiverged as error:

@@ -28,7 +28,7 @@ PARENT, CHILD, ROD = 'parent', 'child', 'rod'
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class PlaneLine:
     """A link or a cylinder, as points in the plane of the linkage."""
 
     part: str
@@ -50,7 +50,7 @@ class DrawnDrive:
     """Of the actuator at the start, m or rad."""
     stroke: float
     is_rotary: bool
-    poses: tuple[tuple[Line, ...], ...]
+    poses: tuple[tuple[PlaneLine, ...], ...]
     """At the lower end of the range, at the start, and at the upper end."""
 
     @property
@@ -120,24 +120,26 @@ def _one_joint(
         stroke, own.is_rotary, tuple(linkage_lines(float(q), row) for q in ends))
 
 
-def linkage_lines(q: float, row: np.record) -> tuple[Line, ...]:
+def linkage_lines(q: float, row: np.record) -> tuple[PlaneLine, ...]:
     """Return the lines of a linkage of one joint, which is at (0, 0); axes as in L3 to L5."""
     theta = row.sense * q + row.offset
     c, s = cos(float(theta)), sin(float(theta))
     if row.kind == DIRECT:
-        return (Line(CHILD, np.array([[0.0, 0.0], [c, s]])),)
+        return (PlaneLine(CHILD, np.array([[0.0, 0.0], [c, s]])),)
     if row.kind == FOUR_BAR:
         a, b, pin = [row.ak_x, row.ak_y], [row.bk * c, row.bk * s], [row.c_x, row.c_y]
         eye = list(rod_eye(q, row))
-        return (Line(PARENT, np.array([a, [0.0, 0.0], pin])),
-                Line(CHILD, np.array([[0.0, 0.0], b])), Line(CHILD, np.array([a, eye, b])),
-                Line(ROD, np.array([pin, eye])))
+        return (PlaneLine(PARENT, np.array([a, [0.0, 0.0], pin])),
+                PlaneLine(CHILD, np.array([[0.0, 0.0], b])),
+                PlaneLine(CHILD, np.array([a, eye, b])),
+                PlaneLine(ROD, np.array([pin, eye])))
     a, b = [row.a, 0.0], [row.b * c, row.b * s]
-    return (Line(PARENT, np.array([[0.0, 0.0], a])), Line(CHILD, np.array([[0.0, 0.0], b])),
-            Line(ROD, np.array([a, b])))
+    return (PlaneLine(PARENT, np.array([[0.0, 0.0], a])),
+            PlaneLine(CHILD, np.array([[0.0, 0.0], b])),
+            PlaneLine(ROD, np.array([a, b])))
 
 
-def _in_plane(body: RobotConfig, own: Points, link: int, q: float) -> tuple[Line, ...]:
+def _in_plane(body: RobotConfig, own: Points, link: int, q: float) -> tuple[PlaneLine, ...]:
     """Return the lines of a cylinder across the axis of the joint that it moves."""
     sheet = body.sheet
     joints = list(body.coordinates)
@@ -150,9 +152,9 @@ def _in_plane(body: RobotConfig, own: Points, link: int, q: float) -> tuple[Line
     centre = point(fixed, joint.place)
     across = _plane(axes, joint.kind == 'revolute')
     first, second, middle = ((place - centre) @ across for place in (base, rod, at[link].place))
-    return (Line(PARENT if is_parent else CHILD, np.array([middle, first])),
-            Line(CHILD if is_parent else PARENT, np.array([middle, second])),
-            Line(ROD, np.array([first, second])))
+    return (PlaneLine(PARENT if is_parent else CHILD, np.array([middle, first])),
+            PlaneLine(CHILD if is_parent else PARENT, np.array([middle, second])),
+            PlaneLine(ROD, np.array([first, second])))
 
 
 def _plane(axes: Floats, turns: bool) -> Floats:

@@ -31,7 +31,7 @@ _TIME = ('column', 'unit', 'rate_hz')
 _SIGNAL = ('column', 'topic', 'field', 'unit', 'sign', 'scale', 'offset', 'delay_ms')
 
 
-class Source(NamedTuple):
+class SignalSource(NamedTuple):
     """Where a signal's numbers are: a column by name or number from 1, or a topic and a field."""
 
     column: str | int | None
@@ -42,7 +42,7 @@ class Source(NamedTuple):
 class MappedSignal(NamedTuple):
     """One signal; ``factor`` is sign times scale, ``offset`` in ``unit``, ``delay`` in s."""
 
-    source: Source
+    source: SignalSource
     unit: str
     factor: float
     offset: float
@@ -135,7 +135,7 @@ def _signal(signals: Mapping[str, Any], quantity: str, where: str) -> MappedSign
     if scale == 0.0:
         raise ConfigError(f'{where}: scale = 0, must not be 0')
     return MappedSignal(
-        Source(_column(own, where), str(own.get('topic', '')), str(own.get('field', ''))),
+        SignalSource(_column(own, where), str(own.get('topic', '')), str(own.get('field', ''))),
         str(own['unit']), sign * scale,
         _number(own, 'offset', where, 0.0), _number(own, 'delay_ms', where, 0.0) * MILLI, where)
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from isa_ros.analysis.report.encoding import Encoder
 from isa_ros.analysis.report.marks import Marks
 from isa_ros.analysis.report.panels import Curve, Group, Panel
-from isa_ros.analysis.report.thinning import Thinning, thinning_for
+from isa_ros.analysis.report.thinning import SignalThinning, thinning_for
 from isa_ros.text.markup import escaped, json_in_page, tag
 from isa_ros.vendor import uplot
 
@@ -81,7 +81,7 @@ def document(title: str, head: str, shown: Sequence[Shown], span: Span) -> str:
         meta=json_in_page(meta), data=encoder.text(), script=script)
 
 
-def thinning_of(shown: Sequence[Shown]) -> Thinning | None:
+def thinning_of(shown: Sequence[Shown]) -> SignalThinning | None:
     """Return how the samples of a page are thinned; None: it has all of them."""
     lengths = {id(curve.signal.values): len(curve.signal.t)
                for own in shown for panel in own.group.panels for curve in panel.curves}

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import zlib
 
 from isa_ros.analysis.report.panels import extent, Floats
-from isa_ros.analysis.report.thinning import Thinning
+from isa_ros.analysis.report.thinning import SignalThinning
 from isa_ros.analysis.signals.signals import Signal
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +40,7 @@ class Encoder:
     ``thinning`` chooses the samples of signals that are too many for a page.
     """
 
-    def __init__(self, thinning: Thinning | None = None) -> None:
+    def __init__(self, thinning: SignalThinning | None = None) -> None:
         self._thinning = thinning
         self.grids: list[dict[str, Any]] = []
         """Times of signals: t0, step and n, all s; and offset where they are not even."""

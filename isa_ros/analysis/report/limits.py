@@ -16,7 +16,7 @@ Condition = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 _AT_LIMIT = 1.0 - 1e-9      # of a limit: rounding of a product
 
 
-class Reached(NamedTuple):
+class ReachedLimit(NamedTuple):
     """A limit that was reached."""
 
     actuator: str
@@ -31,13 +31,13 @@ class Reached(NamedTuple):
                 f'{100.0 * self.share:.2g} % of the time')
 
 
-def reached_limits(signals: Signals) -> list[Reached]:
+def reached_limits(signals: Signals) -> list[ReachedLimit]:
     """Return the limits that were reached, by actuator; values of the configuration are needed."""
     return [found for own in signals.run.actuators
             for found in (*_of_loops(signals, own), *_of_plant(signals, own))]
 
 
-def _of_loops(signals: Signals, own: ActuatorConfig) -> Iterator[Reached]:
+def _of_loops(signals: Signals, own: ActuatorConfig) -> Iterator[ReachedLimit]:
     """Yield the loops whose output, the reference of the next one, was at its limit."""
     on, known = [*active(own.sheet.reu)], tunables(own.sheet)
     for outer, inner in zip(on, on[1:]):
@@ -49,7 +49,7 @@ def _of_loops(signals: Signals, own: ActuatorConfig) -> Iterator[Reached]:
                 f'output of the {outer} loop at its limit', lambda values: np.abs(values) >= most)
 
 
-def _of_plant(signals: Signals, own: ActuatorConfig) -> Iterator[Reached]:
+def _of_plant(signals: Signals, own: ActuatorConfig) -> Iterator[ReachedLimit]:
     """Yield end stops and opened relief valves."""
     plant, stroke = plant_record(own.sheet.plant)[0], own.sheet.plant.drive.stroke
     least = float(plant.sensors.encoder)
@@ -65,10 +65,10 @@ def _of_plant(signals: Signals, own: ActuatorConfig) -> Iterator[Reached]:
 
 
 def _where(signals: Signals, actuator: str, field: str, what: str,
-           is_there: Condition) -> Iterator[Reached]:
+           is_there: Condition) -> Iterator[ReachedLimit]:
     """Yield a limit if a signal was recorded and reached it."""
     signal = signals.drawn(f'{actuator}.{field}')
     holds = is_there(signal.values)
     if holds.any():
-        yield Reached(actuator, what, float(signal.t[int(np.argmax(holds))]),
-                      float(np.mean(holds)))
+        yield ReachedLimit(actuator, what, float(signal.t[int(np.argmax(holds))]),
+                           float(np.mean(holds)))

@@ -13,7 +13,7 @@ MOST_EVENTS = 40
 _FEWEST = 1000      # parts, however many signals there are
 
 
-class Thinning(NamedTuple):
+class SignalThinning(NamedTuple):
     """What is kept of signals that are too many for a page."""
 
     parts: int
@@ -31,11 +31,11 @@ class Thinning(NamedTuple):
 
 
 def thinning_for(n_samples: int, n_signals: int, most: int,
-                 events: Sequence[float]) -> Thinning | None:
+                 events: Sequence[float]) -> SignalThinning | None:
     """Return how ``n_samples`` of all signals become about ``most``; None: all are kept."""
     if n_samples <= most:
         return None
-    return Thinning(max(_FEWEST, most // (2 * n_signals)), events[:MOST_EVENTS])
+    return SignalThinning(max(_FEWEST, most // (2 * n_signals)), events[:MOST_EVENTS])
 
 
 def extreme_places(values: Floats, parts: int) -> NDArray[np.int64]:

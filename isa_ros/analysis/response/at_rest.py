@@ -20,7 +20,7 @@ RECORDED_S = 0.5
 HUNTS = 0.02        # largest ripple of a quiet loop over the amplitude: three quanta of its sensor
 
 
-class Rest(NamedTuple):
+class LoopAtRest(NamedTuple):
     """A loop without excitation."""
 
     ripple: float
@@ -51,7 +51,7 @@ def ticks_at_rest(rate: float) -> tuple[int, int]:
     return round(PUSH_S * rate), round((SETTLE_S + RECORDED_S) * rate)
 
 
-def rest_of(output: np.ndarray, amplitude: float, rate: float) -> Rest:
+def rest_of(output: np.ndarray, amplitude: float, rate: float) -> LoopAtRest:
     """Return the ripple in the last `RECORDED_S` of an output, (n,)."""
     values = signal.detrend(output[-round(RECORDED_S * rate):])
-    return Rest(ripple(values), ripple_frequency(values, rate), amplitude)
+    return LoopAtRest(ripple(values), ripple_frequency(values, rate), amplitude)

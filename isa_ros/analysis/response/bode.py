@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
-from isa_ros.analysis.response.at_rest import HUNTS, Rest, rest_of, ticks_at_rest
+from isa_ros.analysis.response.at_rest import HUNTS, LoopAtRest, rest_of, ticks_at_rest
 from isa_ros.analysis.response.loops import CLOSED, Loop, OPEN, PLANT, UserUnit
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import Estimator, excitation, FrequencySweep
@@ -35,7 +35,7 @@ class Bode:
     bandwidth: float | None     # of the closed loop, relative to a gain of 1, Hz
     margins: Margins            # of the open loop
     amplitude: float            # of the reference, SI
-    rest: Rest                  # the loop without excitation
+    rest: LoopAtRest                  # the loop without excitation
 
 
 def bode(rig: Rig, sweep: FrequencySweep, of: str, amplitude: float | None = None) -> Bode:
@@ -63,7 +63,7 @@ def bode(rig: Rig, sweep: FrequencySweep, of: str, amplitude: float | None = Non
 
 def evaluate(
         loop: Loop, answer: Estimator, of: str, amplitude: float, trace: Trace,
-        rest: Rest) -> Bode:
+        rest: LoopAtRest) -> Bode:
     """Return a loop's response from the trace of one run, and its ripple after it."""
     reference, y = trace[f'{loop.name}_reference'], trace[loop.name]
     closed, opened, requested = (

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from isa_ros.analysis.response import bode as bodes
 from isa_ros.analysis.response.actuator_trace import Trace
-from isa_ros.analysis.response.at_rest import RECORDED_S, Rest, rest_of
+from isa_ros.analysis.response.at_rest import LoopAtRest, RECORDED_S, rest_of
 from isa_ros.analysis.response.loops import loop_name, loop_of, PLANT
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import chirp_band, Estimator, FrequencySweep, SEGMENT_CYCLES
@@ -25,7 +25,7 @@ from isa_ros.loads.sheets import LocalLoad
 import numpy as np
 
 
-class Recorded(NamedTuple):
+class RecordedLoop(NamedTuple):
     """One actuator of a bag with one of its loops."""
 
     rig: Rig
@@ -45,7 +45,7 @@ class Recorded(NamedTuple):
         return SEGMENT_CYCLES * SEGMENTS * self.rate / ticks
 
 
-def recorded(bag: Path, actuator: str | None, wanted: str) -> Recorded:
+def recorded(bag: Path, actuator: str | None, wanted: str) -> RecordedLoop:
     """
     Return a loop of an actuator of a bag; without a name its only actuator.
 
@@ -72,11 +72,11 @@ def recorded(bag: Path, actuator: str | None, wanted: str) -> Recorded:
             f'--bag {bag}: {config.name}.{loop.name}_reference must change, and be recorded at '
             'every tick')
     load = 'its body' if config.load is None else kind_of(config.load, LocalLoad)
-    return Recorded(Rig(signals.run.alone(config), loop, load), trace,
-                    slice(int(changes[0]), int(changes[-1]) + 2))
+    return RecordedLoop(Rig(signals.run.alone(config), loop, load), trace,
+                        slice(int(changes[0]), int(changes[-1]) + 2))
 
 
-def bode(found: Recorded, sweep: FrequencySweep, of: str, bag: Path) -> bodes.Bode:
+def bode(found: RecordedLoop, sweep: FrequencySweep, of: str, bag: Path) -> bodes.Bode:
     """
     Evaluate as `bode.bode`; the loop is at rest if its reference is, at the end of the bag.
 
@@ -99,7 +99,7 @@ def bode(found: Recorded, sweep: FrequencySweep, of: str, bag: Path) -> bodes.Bo
     return bodes.evaluate(
         loop, Estimator(found.rate, segment=segment, frequencies=sweep.frequencies), of, amplitude,
         excited, rest_of(output, amplitude, found.rate) if still >= RECORDED_S * found.rate
-        else Rest(math.nan, math.nan, amplitude))
+        else LoopAtRest(math.nan, math.nan, amplitude))
 
 
 def _refuse_unrecorded(signal: str, bag: Path) -> None:

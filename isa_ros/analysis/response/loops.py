@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.core.units import MILLI, MPA
@@ -108,7 +108,7 @@ def outermost(sheet: ActuatorSheet, name: str) -> ActuatorSheet:
     return replace(sheet, reu=replace(sheet.reu, **outside))
 
 
-def loop_name(actuator: ActuatorConfig, wanted: str) -> str:
+def loop_name(actuator: ConfiguredActuator, wanted: str) -> str:
     """
     Return the name of a loop that a user names: the torque loop of a rotary actuator is `force`.
 

@@ -68,7 +68,7 @@ and hoses are assumed."""
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FallingLoad:
     """What one case does."""
 
     case: str
@@ -100,7 +100,7 @@ class Outcome:
         return float(self.pressure[self.time >= BURST_S].max())
 
 
-def results(progress: Progress | None = None) -> list[Outcome]:
+def results(progress: Progress | None = None) -> list[FallingLoad]:
     """Simulate the crane in each case."""
     found = []
     for k, (case, holding) in enumerate(CASES.items()):
@@ -112,7 +112,7 @@ def results(progress: Progress | None = None) -> list[Outcome]:
             warnings.simplefilter('ignore', TripWarning)
             result = load('crane', _SCENARIO, changes=changes).simulate()
         position = np.asarray(result['lift.position'], float)
-        found.append(Outcome(
+        found.append(FallingLoad(
             case, np.linspace(0.0, SECONDS, len(position)), position,
             np.asarray(result['lift.chamber_pressure_a'], float)))
         if progress is not None:
@@ -120,26 +120,26 @@ def results(progress: Progress | None = None) -> list[Outcome]:
     return found
 
 
-def _table(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+def _table(found: Sequence[FallingLoad]) -> list[tuple[str, ...]]:
     return [('lift cylinder', 'in after 0.5 s, mm', 'after 3 s, mm', 'fastest, m/s',
              'peak in A, MPa'),
             *((own.case, digits(own.first / MILLI, 3), digits(own.fallen / MILLI, 3),
                digits(own.fastest, 3), digits(own.peak / MPA, 3)) for own in found)]
 
 
-def as_text(found: Sequence[Outcome]) -> str:
+def as_text(found: Sequence[FallingLoad]) -> str:
     """Return the text for a terminal."""
     return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
 
 
-def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
+def as_tree(found: Sequence[FallingLoad]) -> dict[str, Any]:
     """Return the study for JSON, SI."""
     return {'name': NAME, 'title': TITLE, 'outcomes': [
         {'case': own.case, 'first': own.first, 'fallen': own.fallen, 'fastest': own.fastest,
          'peak': own.peak} for own in found]}
 
 
-def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
+def write_page(found: Sequence[FallingLoad], directory: Path) -> list[Path]:
     """Write falling_load.md with its figure into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
     page.figure(NAME, TITLE, png_with_palette(_figure(found)))
@@ -148,7 +148,7 @@ def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _figure(found: Sequence[Outcome]) -> Figure:
+def _figure(found: Sequence[FallingLoad]) -> Figure:
     figure = Figure(figsize=(7.0, 5.0), dpi=85, layout='constrained')
     above, below = figure.subplots(2, 1, sharex=True)
     for own in found:

@@ -42,7 +42,7 @@ the hysteresis is no dead zone, and costs gain and phase only. A dither beyond h
 threshold ends the hunting; it is a ripple of its own."""
 
 
-class Valve(NamedTuple):
+class ValveCase(NamedTuple):
     """A row: what the valve has, and what the REU does about it, in percent."""
 
     hysteresis: float
@@ -63,22 +63,23 @@ class Valve(NamedTuple):
                 'reu.current.dither_hz': DITHER_HZ, 'reu.current.dither_percent': self.dither}
 
 
-VALVES = (Valve(0.0, 0.0), Valve(0.5, 0.5), Valve(1.0, 1.0), Valve(3.0, 0.5), Valve(3.0, 1.0),
-          Valve(3.0, 3.0), Valve(3.0, 1.0, 1.0), Valve(3.0, 3.0, 2.0))
+VALVES = (ValveCase(0.0, 0.0), ValveCase(0.5, 0.5), ValveCase(1.0, 1.0), ValveCase(3.0, 0.5),
+          ValveCase(3.0, 1.0), ValveCase(3.0, 3.0), ValveCase(3.0, 1.0, 1.0),
+          ValveCase(3.0, 3.0, 2.0))
 
 
 @dataclass(frozen=True)
 class Hunting:
     """A valve at one gain."""
 
-    valve: Valve
+    valve: ValveCase
     gain: float
     ripple: float               # N, peak to peak
     frequency: float | None     # Hz; None: no limit cycle
 
 
 def results(
-        progress: Progress | None = None, valves: Sequence[Valve] = VALVES,
+        progress: Progress | None = None, valves: Sequence[ValveCase] = VALVES,
         gains: Sequence[float] = GAINS) -> list[Hunting]:
     """Measure each valve at each gain."""
     bench = rig(Choice(name=MODEL, loop='force', preset=PRESET, load=BLOCKED))
@@ -91,7 +92,7 @@ def results(
     return found
 
 
-def hunting(bench: Rig, valve: Valve, gain: float) -> Hunting:
+def hunting(bench: Rig, valve: ValveCase, gain: float) -> Hunting:
     """Return what is left of a push."""
     sheet = bench.config.sheet
     step = 2.0 * sheet.plant.sensors.force_range / 2.0 ** sheet.plant.sensors.adc_bits
@@ -125,8 +126,8 @@ def write_page(found: Sequence[Hunting], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _rows(found: Sequence[Hunting]) -> dict[Valve, list[Hunting]]:
-    rows: dict[Valve, list[Hunting]] = {}
+def _rows(found: Sequence[Hunting]) -> dict[ValveCase, list[Hunting]]:
+    rows: dict[ValveCase, list[Hunting]] = {}
     for one in found:
         rows.setdefault(one.valve, []).append(one)
     return rows

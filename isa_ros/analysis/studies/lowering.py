@@ -68,7 +68,7 @@ On the circuit of `config/crane_circuit.yaml` the same boom follows as well. Neg
 volume of the pilot line and what throttles it, the usual remedy for a ratio that is too large."""
 
 
-class Case(NamedTuple):
+class LoweringCase(NamedTuple):
     """One valve and loop."""
 
     loop: str
@@ -80,20 +80,21 @@ class Case(NamedTuple):
     """Of the force loop, over the model's K_p."""
 
 
-CASES = (*(Case(BY_POSITION, ratio) for ratio in (1.0, 1.5, 3.0, 5.0, 10.0)),
-         Case(BY_POSITION, 10.0, opening_mpa=1.0),
-         *(Case(BY_FORCE, ratio) for ratio in (1.0, 1.5, 3.0, 10.0)),
-         Case(BY_FORCE, 3.0, opening_mpa=12.0), Case(BY_FORCE, 3.0, lag_ms=2.0),
-         Case(BY_FORCE, 3.0, gain=0.5), Case(SOFT, 1.5))
-SHOWN = (Case(BY_POSITION, 1.5), Case(BY_POSITION, 10.0), Case(BY_FORCE, 3.0))
+CASES = (*(LoweringCase(BY_POSITION, ratio) for ratio in (1.0, 1.5, 3.0, 5.0, 10.0)),
+         LoweringCase(BY_POSITION, 10.0, opening_mpa=1.0),
+         *(LoweringCase(BY_FORCE, ratio) for ratio in (1.0, 1.5, 3.0, 10.0)),
+         LoweringCase(BY_FORCE, 3.0, opening_mpa=12.0), LoweringCase(BY_FORCE, 3.0, lag_ms=2.0),
+         LoweringCase(BY_FORCE, 3.0, gain=0.5), LoweringCase(SOFT, 1.5))
+SHOWN = (LoweringCase(BY_POSITION, 1.5), LoweringCase(BY_POSITION, 10.0),
+         LoweringCase(BY_FORCE, 3.0))
 """Those of the figure."""
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Lowering:
     """What one case does, SI, (n,)."""
 
-    case: Case
+    case: LoweringCase
     time: NDArray[np.float64]
     position: NDArray[np.float64]
     reference: NDArray[np.float64]
@@ -144,7 +145,7 @@ def _own_gain() -> float:
     return loop.kp
 
 
-def _changes(case: Case) -> dict[str, Any]:
+def _changes(case: LoweringCase) -> dict[str, Any]:
     holding = f'{_LIFT}.parameters.plant.holding_a'
     changes: dict[str, Any] = {
         f'{holding}.pilot_ratio': case.ratio, f'{holding}.opening_mpa': case.opening_mpa,
@@ -155,7 +156,7 @@ def _changes(case: Case) -> dict[str, Any]:
     return changes
 
 
-def _scenario(case: Case) -> str | Tree:
+def _scenario(case: LoweringCase) -> str | Tree:
     if case.loop == BY_POSITION:
         return SCENARIO
     # as in the file, with what an impedance needs
@@ -169,7 +170,7 @@ def _scenario(case: Case) -> str | Tree:
         'crane/tilt': [{'t_s': 0.0, 'position': 'hold'}]}}
 
 
-def outcome(case: Case) -> Outcome:
+def outcome(case: LoweringCase) -> Lowering:
     """Simulate one case."""
     with warnings.catch_warnings():     # a case shows a trip
         warnings.simplefilter('ignore', TripWarning)
@@ -177,11 +178,11 @@ def outcome(case: Case) -> Outcome:
     position, reference, pressure, pilot = (
         np.asarray(result[f'{BOOM}.{name}'], float) for name in (
             'position', 'position_reference', 'chamber_pressure_a', 'chamber_pressure_b'))
-    return Outcome(case, result.time, position, reference, pressure, pilot, tuple(
+    return Lowering(case, result.time, position, reference, pressure, pilot, tuple(
         f'{trip.condition}, {digits(trip.t_s, 2)} s' for trip in result.trips))
 
 
-def results(progress: Progress | None = None) -> list[Outcome]:
+def results(progress: Progress | None = None) -> list[Lowering]:
     """Simulate all cases."""
     found = []
     for k, case in enumerate(CASES):
@@ -196,7 +197,7 @@ _COLUMNS: tuple[str, ...] = (
     'swing of A, MPa rms', 'at, Hz', 'B up to, MPa', 'trips')
 
 
-def _table(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+def _table(found: Sequence[Lowering]) -> list[tuple[str, ...]]:
     rows = [_COLUMNS]
     for own in found:
         case, (rms, frequency) = own.case, own.swing
@@ -209,12 +210,12 @@ def _table(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
     return rows
 
 
-def as_text(found: Sequence[Outcome]) -> str:
+def as_text(found: Sequence[Lowering]) -> str:
     """Return the text for a terminal."""
     return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
 
 
-def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
+def as_tree(found: Sequence[Lowering]) -> dict[str, Any]:
     """Return the study for JSON, SI."""
     return {'name': NAME, 'title': TITLE, 'outcomes': [
         {'loop': own.case.loop, 'pilot_ratio': own.case.ratio,
@@ -224,19 +225,19 @@ def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
          'largest_pilot': own.largest_pilot, 'trips': list(own.trips)} for own in found]}
 
 
-def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
+def write_page(found: Sequence[Lowering], directory: Path) -> list[Path]:
     """Write lowering.md with its figure into a directory; return their paths."""
-    by_case: Mapping[Case, Outcome] = {own.case: own for own in found}
+    by_case: Mapping[LoweringCase, Lowering] = {own.case: own for own in found}
     page = Page(PAGE, _HEAD)
     page.figure(NAME, TITLE, png_with_palette(_figure([by_case[case] for case in SHOWN])))
     page.table(_table(found), RIGHT)
     page.paragraph(_TEXT.format(
-        pilot_least=by_case[Case(BY_POSITION, 1.0)].largest_pilot / MPA,
-        pilot_most=by_case[Case(BY_POSITION, 10.0)].largest_pilot / MPA))
+        pilot_least=by_case[LoweringCase(BY_POSITION, 1.0)].largest_pilot / MPA,
+        pilot_most=by_case[LoweringCase(BY_POSITION, 10.0)].largest_pilot / MPA))
     return page.write(directory)
 
 
-def _figure(found: Sequence[Outcome]) -> Figure:
+def _figure(found: Sequence[Lowering]) -> Figure:
     figure = Figure(figsize=(7.0, 6.5), dpi=85, layout='constrained')
     axes = figure.subplots(3, 1, sharex=True)
     for own in found:

@@ -55,7 +55,7 @@ by throttling and leakage."""
 _CLOSES = 'Each account of a circuit (E12 of [equations.md](equations.md)) closes within {:.0e}.'
 
 
-class Unit(NamedTuple):
+class PowerUnit(NamedTuple):
     """A row: what the unit has."""
 
     displacement: float     # ml
@@ -75,17 +75,18 @@ class Unit(NamedTuple):
                 f'{parts}.pump.power_w': self.power, f'{parts}.buffer.gas_volume_l': self.gas}
 
 
-CHOSEN = Unit(5.0, 5000.0, 0.32)
-UNITS = (Unit(3.5, 5000.0, 0.16), Unit(3.5, 5000.0, 0.75), Unit(4.0, 5000.0, 0.16),
-         Unit(4.0, 5000.0, 0.75), Unit(5.0, 5000.0, 0.02), Unit(5.0, 5000.0, 0.16), CHOSEN,
-         Unit(7.0, 5000.0, 0.16), Unit(7.0, 4000.0, 0.16))
+CHOSEN = PowerUnit(5.0, 5000.0, 0.32)
+UNITS = (PowerUnit(3.5, 5000.0, 0.16), PowerUnit(3.5, 5000.0, 0.75), PowerUnit(4.0, 5000.0, 0.16),
+         PowerUnit(4.0, 5000.0, 0.75), PowerUnit(5.0, 5000.0, 0.02),
+         PowerUnit(5.0, 5000.0, 0.16), CHOSEN,
+         PowerUnit(7.0, 5000.0, 0.16), PowerUnit(7.0, 4000.0, 0.16))
 
 
 @dataclass(frozen=True)
 class Supplied:
     """The trot on one unit; SI, means and peaks as the page has them."""
 
-    unit: Unit
+    unit: PowerUnit
     sag: float          # Pa
     pushed_sag: float   # Pa; NaN: it ended before
     lowest: float       # Pa
@@ -105,7 +106,7 @@ class Supplied:
 
 
 def results(
-        progress: Progress | None = None, units: Sequence[Unit] = UNITS,
+        progress: Progress | None = None, units: Sequence[PowerUnit] = UNITS,
         duration: float = DURATION) -> list[Supplied]:
     """Let it trot on each unit."""
     found: list[Supplied] = []
@@ -116,7 +117,7 @@ def results(
     return found
 
 
-def trot(unit: Unit, duration: float) -> Result:
+def trot(unit: PowerUnit, duration: float) -> Result:
     """Return the run on a unit; one that falls trips, which its row says."""
     run = load(RUN, RUN, changes=unit.parameters)
     with warnings.catch_warnings():
@@ -124,7 +125,7 @@ def trot(unit: Unit, duration: float) -> Result:
         return run.simulate(duration)
 
 
-def supplied(unit: Unit, result: Result) -> Supplied:
+def supplied(unit: PowerUnit, result: Result) -> Supplied:
     """Return the numbers of a run."""
     time, rail = result.time, result[f'{UNIT}/rail.pressure']
     late = STEADY if time[-1] > STEADY else 0.0
@@ -195,13 +196,13 @@ def write_page(found: Sequence[Supplied], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _seen(by_unit: Mapping[Unit, Supplied]) -> str:
+def _seen(by_unit: Mapping[PowerUnit, Supplied]) -> str:
     """Return what follows from the run; nothing of a part of it."""
     if not set(UNITS) <= set(by_unit):
         return ''
     tiny, half, own = (by_unit[CHOSEN._replace(gas=gas)] for gas in (0.02, 0.16, CHOSEN.gas))
-    strong, weak = (by_unit[Unit(7.0, power, 0.16)] for power in (5000.0, 4000.0))
-    starved, buffered = (by_unit[Unit(3.5, 5000.0, gas)] for gas in (0.16, 0.75))
+    strong, weak = (by_unit[PowerUnit(7.0, power, 0.16)] for power in (5000.0, 4000.0))
+    starved, buffered = (by_unit[PowerUnit(3.5, 5000.0, gas)] for gas in (0.16, 0.75))
     low = min(one.lowest for one in by_unit.values() if np.isnan(one.fell))
     return '\n\n'.join(fill(text, 99) for text in (
         f'**The pump must give the mean flow.** The trot takes {own.flow / LPM:.0f} l/min and '

@@ -73,7 +73,7 @@ class Branch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Measured:
+class SheetNumber:
     """One number of the sheet and of the bench."""
 
     what: str
@@ -83,15 +83,15 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SheetAndBench:
     """All numbers, and the loops of the figure."""
 
-    numbers: tuple[Measured, ...]
+    numbers: tuple[SheetNumber, ...]
     flow: tuple[np.ndarray, np.ndarray]         # current, mA; flow, l/min
     pressure: tuple[np.ndarray, np.ndarray]     # current, mA; load pressure, MPa
 
 
-def results(progress: Progress | None = None) -> Outcome:
+def results(progress: Progress | None = None) -> SheetAndBench:
     """Run the bench, and the sines at two amplitudes."""
     signals = signals_of(load(RIG, SCENARIO).simulate())
     if progress is not None:
@@ -101,10 +101,10 @@ def results(progress: Progress | None = None) -> Outcome:
         found += _of_sines(amplitude)
         if progress is not None:
             progress(k + 2, 3)
-    return Outcome(tuple(found), _loop(signals, FREE), _loop(signals, SHUT))
+    return SheetAndBench(tuple(found), _loop(signals, FREE), _loop(signals, SHUT))
 
 
-def _of_cycle(signals: Signals) -> list[Measured]:
+def _of_cycle(signals: Signals) -> list[SheetNumber]:
     sheet = _valve(signals, FREE)
     rated, leak = sheet.flow.currents_ma[-1] * MILLI, sheet.leakage
     down, up = branches(signals, FREE, _flow(signals))
@@ -123,23 +123,24 @@ def _of_cycle(signals: Signals) -> list[Measured]:
     at = np.array([-1.0, 1.0]) * gain.current_percent * PERCENT
     span = np.diff(np.interp(at, _LEVELS, pressure))[0] / (2.0 * leak.pressure_mpa * MPA)
     return [
-        Measured('rated flow, 40 mA and 7 MPa', 'l/min', sheet.flow.flows_lpm[-1],
-                 float(np.polyval(slope, 1.0)) / LPM),
-        Measured('hysteresis, of the current', '%', sheet.hysteresis_percent,
-                 float((up.current - down.current).max()) / PERCENT),
-        Measured('threshold: current until the spool turns', '%', sheet.threshold_percent,
-                 _reversal(signals, rated) / PERCENT),
-        Measured('leakage at null', 'l/min', leak.total_lpm[0],
-                 float(np.interp(0.0, _LEVELS, total)) / LPM),
-        Measured('leakage at 40 mA', 'l/min', leak.total_lpm[-1],
-                 float(leakage[np.argmax(_values(signals, f'{SHUT}.current'))]) / LPM),
-        Measured('load pressure at 1 % of the current', '%', gain.percent, float(span) / PERCENT),
-        Measured('shift of null with supply pressure', '%/MPa',
-                 sheet.null_shift.supply_percent_per_mpa,
-                 (null - free_null) / PERCENT / (supplies[0] - supplies[1])),
-        Measured('load pressure between both branches, no current', 'MPa', None,
-                 float(np.interp(0.0, p_down.current, p_down.other)
-                       - np.interp(0.0, p_up.current, p_up.other)) / MPA)]
+        SheetNumber('rated flow, 40 mA and 7 MPa', 'l/min', sheet.flow.flows_lpm[-1],
+                    float(np.polyval(slope, 1.0)) / LPM),
+        SheetNumber('hysteresis, of the current', '%', sheet.hysteresis_percent,
+                    float((up.current - down.current).max()) / PERCENT),
+        SheetNumber('threshold: current until the spool turns', '%', sheet.threshold_percent,
+                    _reversal(signals, rated) / PERCENT),
+        SheetNumber('leakage at null', 'l/min', leak.total_lpm[0],
+                    float(np.interp(0.0, _LEVELS, total)) / LPM),
+        SheetNumber('leakage at 40 mA', 'l/min', leak.total_lpm[-1],
+                    float(leakage[np.argmax(_values(signals, f'{SHUT}.current'))]) / LPM),
+        SheetNumber('load pressure at 1 % of the current', '%', gain.percent,
+                    float(span) / PERCENT),
+        SheetNumber('shift of null with supply pressure', '%/MPa',
+                    sheet.null_shift.supply_percent_per_mpa,
+                    (null - free_null) / PERCENT / (supplies[0] - supplies[1])),
+        SheetNumber('load pressure between both branches, no current', 'MPa', None,
+                    float(np.interp(0.0, p_down.current, p_down.other)
+                          - np.interp(0.0, p_up.current, p_up.other)) / MPA)]
 
 
 def branches(signals: Signals, name: str, values: np.ndarray) -> tuple[Branch, Branch]:
@@ -202,7 +203,7 @@ def _reversal(signals: Signals, rated: float) -> float:
     return float(current.max() - current[k]) / rated
 
 
-def _of_sines(amplitude: float) -> list[Measured]:
+def _of_sines(amplitude: float) -> list[SheetNumber]:
     """Return -90 degrees and -3 dB of the spool over the current at an amplitude."""
     bench = rig(Choice(name=f'{RIG}.yaml', actuator=SHUT, loop='spool'))
     sheet, sweep = bench.config.sheet.plant, _SWEEPS[amplitude]
@@ -216,10 +217,10 @@ def _of_sines(amplitude: float) -> list[Measured]:
               (sheet.spool.large_minus_90_deg_hz, sheet.spool.large_minus_3_db_hz))
     log = np.log(found.frequency)
     return [
-        Measured(f'-90 deg at {amplitude:.0%}'.replace('%', ' %'), 'Hz', stated[0] or None,
-                 float(np.exp(np.interp(90.0, -phase, log)))),
-        Measured(f'-3 dB at {amplitude:.0%}'.replace('%', ' %'), 'Hz', stated[1] or None,
-                 float(np.exp(np.interp(-np.sqrt(0.5), -gain, log))))]
+        SheetNumber(f'-90 deg at {amplitude:.0%}'.replace('%', ' %'), 'Hz', stated[0] or None,
+                    float(np.exp(np.interp(90.0, -phase, log)))),
+        SheetNumber(f'-3 dB at {amplitude:.0%}'.replace('%', ' %'), 'Hz', stated[1] or None,
+                    float(np.exp(np.interp(-np.sqrt(0.5), -gain, log))))]
 
 
 def _loop(signals: Signals, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -229,17 +230,17 @@ def _loop(signals: Signals, name: str) -> tuple[np.ndarray, np.ndarray]:
     return _values(signals, f'{name}.current')[part] / MILLI, y[part]
 
 
-def as_text(found: Outcome) -> str:
+def as_text(found: SheetAndBench) -> str:
     """Return the text for a terminal."""
     return '\n'.join([TITLE, *aligned(_table(found.numbers), LEFT)])
 
 
-def as_tree(found: Outcome) -> dict[str, Any]:
+def as_tree(found: SheetAndBench) -> dict[str, Any]:
     """Return the study for JSON, in the units of the table."""
     return {'name': NAME, 'title': TITLE, 'numbers': [asdict(one) for one in found.numbers]}
 
 
-def write_page(found: Outcome, directory: Path) -> list[Path]:
+def write_page(found: SheetAndBench, directory: Path) -> list[Path]:
     """Write servo_valve.md and its figure into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
     page.table(_table(found.numbers))
@@ -248,13 +249,13 @@ def write_page(found: Outcome, directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _table(numbers: Sequence[Measured]) -> list[tuple[str, ...]]:
+def _table(numbers: Sequence[SheetNumber]) -> list[tuple[str, ...]]:
     return [('of the data sheet', 'unit', 'stated', 'measured'), *(
         (one.what, one.unit, '-' if one.stated is None else f'{one.stated:g}',
          digits(one.measured, 3)) for one in numbers)]
 
 
-def _drawn(found: Outcome) -> Figure:
+def _drawn(found: SheetAndBench) -> Figure:
     figure = Figure(figsize=(9.2, 3.8), dpi=85, layout='constrained')
     left, right = figure.subplots(1, 2)
     left.plot(*found.flow, linewidth=1.0)

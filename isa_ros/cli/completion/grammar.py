@@ -21,7 +21,7 @@ class Argument(NamedTuple):
     is_closed: bool
 
 
-class Command(NamedTuple):
+class CommandGrammar(NamedTuple):
     """One command by its path of words, `()` is `isa` itself; ``below``: summary by name."""
 
     path: tuple[str, ...]
@@ -41,7 +41,7 @@ class Command(NamedTuple):
 
 
 def commands_of(
-        parser: argparse.ArgumentParser, path: tuple[str, ...] = ()) -> Iterator[Command]:
+        parser: argparse.ArgumentParser, path: tuple[str, ...] = ()) -> Iterator[CommandGrammar]:
     """Yield the command of a parser, then those below it, in their order."""
     rows, below = [], []
     summaries: dict[str, str] = {}
@@ -51,7 +51,7 @@ def commands_of(
             below = list(action.choices.items())
         else:
             rows.append(_argument(action))
-    yield Command(path, summaries, tuple(rows))
+    yield CommandGrammar(path, summaries, tuple(rows))
     for name, own in below:
         yield from commands_of(own, (*path, name))
 

@@ -8,7 +8,7 @@ its own options; what takes a value offers the known ones, else files.
 from collections.abc import Callable, Mapping, Sequence
 import shlex
 
-from isa_ros.cli.completion.grammar import Argument, Command
+from isa_ros.cli.completion.grammar import Argument, CommandGrammar
 
 _BASH = """\
 # Completion of isa for bash: source <(isa completion bash)
@@ -78,12 +78,12 @@ end
 """
 
 
-def script_of(shell: str, commands: Sequence[Command]) -> str:
+def script_of(shell: str, commands: Sequence[CommandGrammar]) -> str:
     """Return the script that completes ``commands`` in a shell of `SHELLS`."""
     return SHELLS[shell](commands)
 
 
-def _bash(commands: Sequence[Command]) -> str:
+def _bash(commands: Sequence[CommandGrammar]) -> str:
     values = _cases(commands, lambda own: (
         f'COMPREPLY=($(compgen -W {_quoted(own.values)} -- "$word")); return'
         if own.values else 'return'))
@@ -93,7 +93,7 @@ def _bash(commands: Sequence[Command]) -> str:
             f'words={_quoted(own.first_words)} ;;' for own in commands))
 
 
-def _zsh(commands: Sequence[Command]) -> str:
+def _zsh(commands: Sequence[CommandGrammar]) -> str:
     values = _cases(commands, lambda own: _zsh_values(own) + 'return', opening='(')
     return _ZSH.format(
         paths=_paths(commands), values='\n'.join(values), commands='\n'.join(
@@ -106,7 +106,7 @@ def _zsh_values(own: Argument) -> str:
     return known if own.is_closed else f'{known}_files; '
 
 
-def _fish(commands: Sequence[Command]) -> str:
+def _fish(commands: Sequence[CommandGrammar]) -> str:
     lines = []
     for own in commands:
         here = f"complete -c isa -n '__isa_at \"{_path(own.path)}\"'"
@@ -123,7 +123,7 @@ def _fish(commands: Sequence[Command]) -> str:
         paths=' '.join(_at(own.path) for own in commands if own.path), commands='\n'.join(lines))
 
 
-SHELLS: Mapping[str, Callable[[Sequence[Command]], str]] = {
+SHELLS: Mapping[str, Callable[[Sequence[CommandGrammar]], str]] = {
     'bash': _bash, 'zsh': _zsh, 'fish': _fish}
 """What makes the script of each shell."""
 
@@ -137,12 +137,12 @@ def _at(path: Sequence[str]) -> str:
     return shlex.quote(_path(path))
 
 
-def _paths(commands: Sequence[Command]) -> str:
+def _paths(commands: Sequence[CommandGrammar]) -> str:
     return '|'.join(_at(own.path) for own in commands if own.path)
 
 
 def _cases(
-        commands: Sequence[Command], action: Callable[[Argument], str],
+        commands: Sequence[CommandGrammar], action: Callable[[Argument], str],
         opening: str = '') -> list[str]:
     """Return a line of a case for every option that takes a value."""
     return [
@@ -151,11 +151,11 @@ def _cases(
         for own in commands for option in own.options if option.takes_value]
 
 
-def _meanings(own: Command) -> dict[str, str]:
+def _meanings(own: CommandGrammar) -> dict[str, str]:
     return {flag: option.meaning for option in own.options for flag in option.flags}
 
 
-def _words(own: Command) -> dict[str, str]:
+def _words(own: CommandGrammar) -> dict[str, str]:
     return {word: own.below.get(word, '') for word in own.first_words}
 
 

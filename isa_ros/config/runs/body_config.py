@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.names import parted, placed
@@ -41,7 +41,7 @@ class Made(NamedTuple):
     """Of its actuators, in the order of its joints."""
     factory: BodyFactory | None
     """Given by the caller of a simulation."""
-    actuators: Sequence[ActuatorConfig]
+    actuators: Sequence[ConfiguredActuator]
     """In the same order."""
     file: str
     """Name of the run file, for messages."""

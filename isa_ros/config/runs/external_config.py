@@ -8,7 +8,7 @@ import sys
 from typing import Any, ClassVar
 from weakref import WeakSet
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.ratings import ratings_of
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
 from isa_ros.config.text.key_tables import KeyTable
@@ -182,14 +182,14 @@ def imported_factory(maker: str, where: str, what: str = 'function') -> BodyFact
     return checked
 
 
-def held_forces(own: ActuatorConfig) -> tuple[float, float]:
+def held_forces(own: ConfiguredActuator) -> tuple[float, float]:
     """Return the forces, N | Nm, between which an actuator holds with its relief valves closed."""
     plant = plant_record(sound(own.sheet.plant))[0]
     opening = ratings_of(plant).opening_pressure
     return float(-opening * plant.chambers.area_b), float(opening * plant.chambers.area_a)
 
 
-def refuse_force(own: ActuatorConfig, force: float) -> None:
+def refuse_force(own: ConfiguredActuator, force: float) -> None:
     """Raise `ConfigError` if the relief valves would open under a force, N | Nm."""
     low, high = held_forces(own)
     if not low <= force <= high:
@@ -199,7 +199,7 @@ def refuse_force(own: ActuatorConfig, force: float) -> None:
             f'{high:.4g} {unit}, at which its relief valves open')
 
 
-def refuse_start(own: ActuatorConfig, place: float, where: str = '') -> None:
+def refuse_start(own: ConfiguredActuator, place: float, where: str = '') -> None:
     """Raise `ConfigError` if an actuator starts outside its stroke; ``place`` in m or rad."""
     stroke = own.sheet.plant.drive.stroke
     if not 0.0 <= place <= stroke:

@@ -6,7 +6,7 @@ Their order is that of the library's inputs, and their names, in capitals, are i
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.setpoint_range import Bounds, reference_bounds, setpoint_bounds
 from isa_ros.actuator.sheet import ActuatorSheet
@@ -45,7 +45,7 @@ SETPOINT = (
 """Fields of a `COMMAND` that are a setpoint and its gains, in their order there."""
 
 
-def inputs(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+def inputs(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
     """
     Yield all that the unit is given; ``start`` is its `START` row.
 
@@ -64,7 +64,7 @@ def _input(name: str, type_: Type, meaning: str, unit: str, start: float,
         enumeration)
 
 
-def _command(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+def _command(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
     sheet = config.sheet
     bounds = setpoint_bounds(sheet)
     stiffness, damping = initial_gains(sheet.reu)
@@ -95,7 +95,7 @@ def _references(sheet: ActuatorSheet) -> str:
     return f'setpoint of a mode: {"; ".join(named)}; not used in the others'
 
 
-def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+def _port(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
     is_rotary = config.sheet.is_rotary
     for field, (name, unit, meaning) in PORT_FIELDS.items():
         value = _load_position(config, start) if field == 'x0' else 0.0
@@ -104,13 +104,13 @@ def _port(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
             )._replace(low=0.0 if field == 'inverse_mass' else None)
 
 
-def _load_position(config: ActuatorConfig, start: np.void) -> float:
+def _load_position(config: ConfiguredActuator, start: np.void) -> float:
     """Return where the load is at the start: its force deflects the sensor  (S1), m or rad."""
     stiffness = config.sheet.plant.mechanics.sensor_stiffness
     return float(start['position'] - start['force'] / stiffness)
 
 
-def _start(config: ActuatorConfig, start: np.void) -> Iterator[Variable]:
+def _start(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
     sheet = config.sheet
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
     position = setpoint_bounds(sheet).get('position')

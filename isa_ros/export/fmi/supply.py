@@ -11,7 +11,7 @@ from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, Records, SUPPLY_PORT, SU
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
 from isa_ros.export.exported import Called
-from isa_ros.export.layout import Layout
+from isa_ros.export.layout import MemoryLayout
 from isa_ros.surroundings.supply_tick import Answers
 import numpy as np
 
@@ -41,10 +41,10 @@ class Supplied(NamedTuple):
         """Return whether its pressure moves within a tick."""
         return len(self.answers) > 0
 
-    def layout(self) -> Layout:
+    def layout(self) -> MemoryLayout:
         """Return the places of all its memory, in one block."""
-        return Layout((*(one.memory for one in (*self.before, *self.after)),
-                       (self.ports, self.feeds, self.replies, self.fed)))
+        return MemoryLayout((*(one.memory for one in (*self.before, *self.after)),
+                             (self.ports, self.feeds, self.replies, self.fed)))
 
 
 def supplied(chosen: Chosen) -> Supplied:

@@ -28,7 +28,7 @@ _NS_PER_S = 1_000_000_000
 _DISCARDED_MASK = 0xFFFF
 
 
-class Part(NamedTuple):
+class PdoPart(NamedTuple):
     """One PDO of one actuator in the content of a frame."""
 
     device: BusDevice
@@ -90,13 +90,13 @@ def refuse_overfull(devices: Sequence[BusDevice], baud: int, step_ns: int) -> No
             f'{step_ns / 1e6:g} ms')
 
 
-def parts(devices: Sequence[BusDevice], assignment: int) -> Iterator[Part]:
+def parts(devices: Sequence[BusDevice], assignment: int) -> Iterator[PdoPart]:
     """Iterate over the content of requests (0x1C12) or, behind the status, of answers (0x1C13)."""
     offset = 0
     for device in devices:
         for pdo in device.assigned(assignment):
             size = device.size(pdo)
-            yield Part(device, pdo, offset, size)
+            yield PdoPart(device, pdo, offset, size)
             offset += size
 
 
@@ -109,8 +109,8 @@ class SerialLine:
         self._reader = FrameReader()
         self._is_operational = False
         self._request: SerialFrame | None = None
-        self._received: list[Part] = []
-        self._transmitted: list[Part] = []
+        self._received: list[PdoPart] = []
+        self._transmitted: list[PdoPart] = []
 
     @property
     def discarded(self) -> int:

@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.constants import participant_digest
 from isa_ros.actuator.timing import Timing
 from isa_ros.actuator.tunable import changing
@@ -41,7 +41,7 @@ _APPLIED = TOPICS.index(APPLIED_SETPOINT)    # its place among an actuator's mes
 class NodeSetup(NamedTuple):
     """The actuator that a node simulates, and its timing."""
 
-    config: ActuatorConfig
+    config: ConfiguredActuator
     timing: Timing
     actuator: SmartActuator | None = None
     """One of a group of actuators; None: the node makes its own."""

@@ -9,14 +9,14 @@ LARGEST_STEP = 1_000_000_000
 """Ticks of one request."""
 
 
-class Outcome(NamedTuple):
+class Attempt(NamedTuple):
     """Whether a request was done, and what to answer."""
 
     is_done: bool
     message: str
 
 
-def attempted(request: Callable[[], str]) -> Outcome:
+def attempted(request: Callable[[], str]) -> Attempt:
     """
     Do a request, which returns its answer, and return the outcome.
 
@@ -27,8 +27,8 @@ def attempted(request: Callable[[], str]) -> Outcome:
 
     """
     try:
-        return Outcome(True, request())
+        return Attempt(True, request())
     except IsaError as error:
         if error.exit_code != IsaError.exit_code:
             raise
-        return Outcome(False, str(error))
+        return Attempt(False, str(error))

@@ -9,7 +9,7 @@ from isa_ros.run.wire.parts import Parts
 from isa_ros.surroundings.callers import cause_of
 
 
-class Outcome(NamedTuple):
+class StepOutcome(NamedTuple):
     """Kind and parts of an answer."""
 
     kind: AnswerKind
@@ -18,17 +18,17 @@ class Outcome(NamedTuple):
     """What also ends this process: all exceptions but `IsaError`."""
 
 
-def outcome_of(kind: AnswerKind, work: Callable[[], Parts]) -> Outcome:
+def outcome_of(kind: AnswerKind, work: Callable[[], Parts]) -> StepOutcome:
     """Return the outcome of ``work``, of this ``kind`` if it does not fail."""
     try:
-        return Outcome(kind, work())
+        return StepOutcome(kind, work())
     except SimulationDiverged as error:
-        return Outcome(AnswerKind.DIVERGED, (
+        return StepOutcome(AnswerKind.DIVERGED, (
             DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
     except IsaError as error:
-        return Outcome(AnswerKind.REFUSED, (_encoded(str(error)),))
+        return StepOutcome(AnswerKind.REFUSED, (_encoded(str(error)),))
     except BaseException as error:
-        return Outcome(
+        return StepOutcome(
             AnswerKind.REFUSED, (_encoded(cause_of(error)),), error)
 
 

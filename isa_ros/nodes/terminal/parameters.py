@@ -11,20 +11,20 @@ from rclpy.parameter import Parameter, parameter_value_to_python
 import yaml
 
 
-class Change(NamedTuple):
+class ParameterChange(NamedTuple):
     """A parameter to set, or to read without a text."""
 
     name: str
     text: str | None
 
 
-def change_of(text: str) -> Change:
+def change_of(text: str) -> ParameterChange:
     """Return what KEY=VALUE or KEY asks for."""
     name, sign, value = text.partition('=')
-    return Change(name, value if sign else None)
+    return ParameterChange(name, value if sign else None)
 
 
-def set_parameters(node: str, changes: Sequence[Change], timeout_s: float,
+def set_parameters(node: str, changes: Sequence[ParameterChange], timeout_s: float,
                    print_line: Callable[[str], None]) -> None:
     """
     Set all changes with a value at once, and print each parameter with its values.
@@ -53,7 +53,7 @@ def set_parameters(node: str, changes: Sequence[Change], timeout_s: float,
                    else f'{change.name}: {old} -> {new}')
 
 
-def _parameter(change: Change) -> Parameter:
+def _parameter(change: ParameterChange) -> Parameter:
     try:
         value = yaml.safe_load(change.text or '')
         return Parameter(change.name, value=_number(value))
@@ -71,7 +71,7 @@ def _number(value: Any) -> Any:
         return value
 
 
-def _values(visitor: Visitor, path: str, changes: Sequence[Change]) -> list[Any]:
+def _values(visitor: Visitor, path: str, changes: Sequence[ParameterChange]) -> list[Any]:
     names = [change.name for change in changes]
     found = _asked(visitor, path, 'get_parameters', GetParameters,
                    GetParameters.Request(names=names)).values

@@ -27,7 +27,7 @@ _REJECTED = 'setpoint rejected: '
 _ROSOUT_DEPTH = 100
 
 
-class Wanted(NamedTuple):
+class GivenSetpoint(NamedTuple):
     """A setpoint in SI; None: not given."""
 
     position: float | None
@@ -74,7 +74,7 @@ def request(actuator: str, what: str, timeout_s: float, print_line: Callable[[st
     return bool(answer.success)
 
 
-def command(actuator: str, wanted: Wanted, timeout_s: float,
+def command(actuator: str, wanted: GivenSetpoint, timeout_s: float,
             print_line: Callable[[str], None]) -> None:
     """
     Send a setpoint and print what took effect, from when on.
@@ -102,7 +102,7 @@ def actuators(visitor: Visitor) -> list[str]:
             if name.endswith(end) and visitor.node.count_publishers(name)]
 
 
-def _sent(visitor: Visitor, path: str, wanted: Wanted) -> JointState:
+def _sent(visitor: Visitor, path: str, wanted: GivenSetpoint) -> JointState:
     """Return the applied setpoint that came of a wanted one."""
     applied: list[JointState] = []
     rejections: list[str] = []

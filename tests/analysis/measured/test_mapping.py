@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from isa_ros.analysis.measured.mapping import load_mapping, Source
+from isa_ros.analysis.measured.mapping import load_mapping, SignalSource
 from isa_ros.analysis.measured.quantities import QUANTITIES, scale_of
 from isa_ros.errors import ConfigError
 import pytest
@@ -30,9 +30,9 @@ def test_every_key_has_its_meaning(tmp_path: Path) -> None:
     assert (own.time, own.time_scale, own.rate, own.skip_lines) == ('stamp', 1e-3, None, 7)
     assert own.clock == pytest.approx(4e-5, rel=1e-12, abs=0.0)
     position, force = own.signals['position'], own.signals['force']
-    assert position.source == Source(3, '', '') and position.unit == 'mm'
+    assert position.source == SignalSource(3, '', '') and position.unit == 'mm'
     assert (position.factor, position.offset, position.delay) == (-0.5, 12.0, 0.002)
-    assert force.source == Source(None, '/cell', 'wrench.force.x')
+    assert force.source == SignalSource(None, '/cell', 'wrench.force.x')
     assert (force.factor, force.offset, force.delay) == (1.0, 0.0, 0.0)
     assert mapping(tmp_path, 'time: {rate_hz: 500}\nsignals: {spool: {column: 1, unit: m}}'
                    ).rate == 500.0

@@ -5,7 +5,7 @@ from isa_ros.analysis.report.document import Shown, Span, thinning_of
 from isa_ros.analysis.report.marks import Marks
 from isa_ros.analysis.report.panels import Curve, Group, Panel
 from isa_ros.analysis.report.thinning import (
-    AROUND, extreme_places, MOST_EVENTS, Thinning, thinning_for)
+    AROUND, extreme_places, MOST_EVENTS, SignalThinning, thinning_for)
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.run.events import Event
 import numpy as np
@@ -42,7 +42,7 @@ def test_a_curve_reaches_the_end_of_the_run():
 
 
 def test_around_events_all_samples_are_kept():
-    kept = Thinning(10, [20.0, 99.9]).thinned(Signal(T, T))
+    kept = SignalThinning(10, [20.0, 99.9]).thinned(Signal(T, T))
     for t_s in (20.0, 99.9):
         near = kept.t[np.abs(kept.t - t_s) < AROUND - 1e-9]
         assert len(near) == ((T > t_s - AROUND + 1e-9) & (T < t_s + AROUND - 1e-9)).sum()
@@ -51,8 +51,8 @@ def test_around_events_all_samples_are_kept():
 
 def test_only_too_many_samples_are_thinned():
     assert thinning_for(1000, 3, 1000, []) is None
-    assert thinning_for(1_000_001, 5, 1_000_000, [1.0]) == Thinning(100_000, [1.0])
-    assert thinning_for(10 ** 9, 10 ** 6, 1000, []) == Thinning(1000, [])
+    assert thinning_for(1_000_001, 5, 1_000_000, [1.0]) == SignalThinning(100_000, [1.0])
+    assert thinning_for(10 ** 9, 10 ** 6, 1000, []) == SignalThinning(1000, [])
     events = [float(k) for k in range(MOST_EVENTS + 5)]
     found = thinning_for(2000, 1, 1000, events)
     assert found is not None and found.events == events[:MOST_EVENTS]
@@ -68,5 +68,5 @@ def test_a_page_of_too_many_samples_says_so(monkeypatch: pytest.MonkeyPatch):
     assert thinning_of(shown) is None and 'Too many samples' not in whole
     monkeypatch.setattr(document, 'MOST_SAMPLES', 4000)
     less = document.document('a', '', shown, Span(0.0, 100.0, 1e-3))
-    assert thinning_of(shown) == Thinning(2000, [3.0])
+    assert thinning_of(shown) == SignalThinning(2000, [3.0])
     assert 'in each of 2000 parts of the run' in less and len(less) < len(whole) - 50_000

@@ -8,8 +8,8 @@ TIME = np.arange(11001) * 1e-3
 
 
 def outcome(pressure, position=TIME):
-    return lowering.Outcome(
-        lowering.Case(lowering.BY_POSITION, 1.5), TIME, position, TIME, pressure,
+    return lowering.Lowering(
+        lowering.LoweringCase(lowering.BY_POSITION, 1.5), TIME, position, TIME, pressure,
         2e6 + 1e5 * TIME, ())
 
 
@@ -45,7 +45,7 @@ def test_a_small_ratio_lets_the_boom_down_and_a_soft_impedance_trips(tmp_path):
     assert small.swing[0] < 0.02e6 < 0.1e6 < large.swing[0]
     assert 2.0 < large.swing[1] < 4.0
     assert by_force.swing[0] > 0.1e6 and 25.0 < by_force.swing[1] < 40.0
-    calm = lowering.outcome(lowering.Case(lowering.BY_FORCE, 3.0, gain=0.5))
+    calm = lowering.outcome(lowering.LoweringCase(lowering.BY_FORCE, 3.0, gain=0.5))
     assert calm.swing[0] < 0.01e6
     found = [*ones.values(), calm, *map(lowering.outcome, lowering.CASES[:1])]
     paths = lowering.write_page(found, tmp_path)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.analysis.studies import power_unit
-from isa_ros.analysis.studies.power_unit import CHOSEN, Supplied, Unit
+from isa_ros.analysis.studies.power_unit import CHOSEN, PowerUnit, Supplied
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.units import LITRE
 from isa_ros.scripting.result import Result
@@ -13,7 +13,7 @@ import pytest
 
 DOCS = Path(__file__).parents[3] / 'docs'
 SECONDS = 0.05
-SMALL = Unit(4.0, 3000.0, 0.05)
+SMALL = PowerUnit(4.0, 3000.0, 0.05)
 
 
 @pytest.fixture(scope='module')
@@ -60,10 +60,10 @@ def test_an_open_account_is_seen(result: Result) -> None:
 
 def test_a_unit_has_the_values_of_its_row_and_the_file_those_of_the_chosen(
         result: Result) -> None:
-    def values(run: RunConfig) -> Unit:
+    def values(run: RunConfig) -> PowerUnit:
         parts = run.supplies[0].sheet.by_name
-        return Unit(parts['pump'].displacement_ml, parts['pump'].power_w,
-                    parts['buffer'].gas_volume_l)
+        return PowerUnit(parts['pump'].displacement_ml, parts['pump'].power_w,
+                         parts['buffer'].gas_volume_l)
     assert values(result.scenario.run) == SMALL
     file = load(power_unit.RUN).configuration
     assert values(file) == CHOSEN in power_unit.UNITS

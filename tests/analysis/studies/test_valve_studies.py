@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from isa_ros.analysis.studies import hysteresis, servo_valve
-from isa_ros.analysis.studies.hysteresis import Valve
-from isa_ros.analysis.studies.servo_valve import Outcome
+from isa_ros.analysis.studies.hysteresis import ValveCase
+from isa_ros.analysis.studies.servo_valve import SheetAndBench
 from isa_ros.cli import main as cli
 import pytest
 
@@ -20,13 +20,13 @@ TOLERANCE = {
 
 
 @pytest.fixture(scope='module')
-def found() -> Outcome:
+def found() -> SheetAndBench:
     """Return the bench's numbers."""
     return servo_valve.results()
 
 
 @pytest.mark.slow
-def test_every_number_of_the_sheet_is_measured_back(found: Outcome) -> None:
+def test_every_number_of_the_sheet_is_measured_back(found: SheetAndBench) -> None:
     stated = {one.what: one for one in found.numbers if one.stated is not None}
     assert len(stated) == 10
     for what, one in stated.items():
@@ -35,14 +35,14 @@ def test_every_number_of_the_sheet_is_measured_back(found: Outcome) -> None:
 
 
 @pytest.mark.slow
-def test_hysteresis_moves_the_blocked_pressure_from_stop_to_stop(found: Outcome) -> None:
+def test_hysteresis_moves_the_blocked_pressure_from_stop_to_stop(found: SheetAndBench) -> None:
     """1.5 % of the current is beyond the 1 % that is 60 % of the supply, both ways."""
     between = next(one for one in found.numbers if 'both branches' in one.what)
     assert 2.0 * 0.6 * 21.0 < between.measured < 2.0 * 21.0
 
 
 @pytest.mark.slow
-def test_the_page_in_the_documentation_is_this_one(found: Outcome, tmp_path: Path) -> None:
+def test_the_page_in_the_documentation_is_this_one(found: SheetAndBench, tmp_path: Path) -> None:
     page, figure = servo_valve.write_page(found, tmp_path)
     assert page.read_text() == (DOCS / page.name).read_text()
     assert figure.exists() and servo_valve.as_tree(found)['numbers'][0]['stated'] == 38.0
@@ -52,7 +52,8 @@ def test_the_page_in_the_documentation_is_this_one(found: Outcome, tmp_path: Pat
 def test_less_gain_hunts_more_and_slower_and_dither_ends_it(tmp_path: Path) -> None:
     """A play of 3 % with its integral; without hysteresis there is no limit cycle."""
     rows = hysteresis.results(
-        valves=(Valve(0.0, 0.0), Valve(3.0, 3.0), Valve(3.0, 3.0, 2.0)), gains=(0.5, 1.0))
+        valves=(ValveCase(0.0, 0.0), ValveCase(3.0, 3.0), ValveCase(3.0, 3.0, 2.0)),
+        gains=(0.5, 1.0))
     none, play, dithered = rows[:2], rows[2:4], rows[4:]
     assert all(one.frequency is None for one in (*none, *dithered))
     assert play[0].ripple > 1.5 * play[1].ripple > 60.0

@@ -1,6 +1,6 @@
 """Values of parameters as they are typed."""
 
-from isa_ros.nodes.terminal.parameters import _parameter, Change
+from isa_ros.nodes.terminal.parameters import _parameter, ParameterChange
 import pytest
 
 
@@ -9,5 +9,5 @@ import pytest
     ('[1.5, 2.5]', [1.5, 2.5])])
 def test_a_number_without_a_point_is_a_number(text, expected):
     """YAML reads 2e-5 as a text."""
-    found = _parameter(Change('reu.force.kp', text)).value
+    found = _parameter(ParameterChange('reu.force.kp', text)).value
     assert found == expected and isinstance(found, type(expected))

@@ -9,13 +9,13 @@ from isa_ros.core.device import IMPEDANCE
 from isa_ros.core.signals import HAS_MODE, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.nodes.terminal import setpoints
-from isa_ros.nodes.terminal.setpoints import command, Wanted
+from isa_ros.nodes.terminal.setpoints import command, GivenSetpoint
 import pytest
 from rcl_interfaces.msg import Log
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 
-WANTED = Wanted(0.03, None, None, {}, {})
+WANTED = GivenSetpoint(0.03, None, None, {}, {})
 
 
 def applied(position: float, changed: int, sec: int) -> JointState:
