@@ -38,14 +38,14 @@ from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'run_file.md'
-_HEADER = ['key', 'value', 'default', 'meaning']
+HEADER = ['key', 'value', 'default', 'meaning']
 _OF_THE_URDF = dict.fromkeys(('low_deg', 'high_deg'), 'of the URDF')
 _IN_TEXT = {InText.NEVER: 'no', InText.IF_ANY: 'yes', InText.ALWAYS: 'yes', InText.ONLY: 'only'}
 
 
 def keys(table: KeyTable) -> list[str]:
     """Return the lines of the table of a section's keys."""
-    return markdown([[*_HEADER, 'resolved text'], *(
+    return markdown([[*HEADER, 'resolved text'], *(
         [f'`{key.name}`', f'{key.kind.words}, {key.kind.unit}' if key.kind.unit
          else key.kind.words, _default(key.default, key.default_words), key.meaning,
          _IN_TEXT[key.in_text]] for key in table.keys)])
@@ -53,11 +53,12 @@ def keys(table: KeyTable) -> list[str]:
 
 def parameters(*sets: type[Parameters]) -> list[str]:
     """Return the lines of the table of the keys of parameter sets, each once."""
-    rows = {row[0]: row for cls in sets for row in _parameters(cls)}
-    return markdown([_HEADER, *rows.values()])
+    rows = {row[0]: row for cls in sets for row in rows_of(cls)}
+    return markdown([HEADER, *rows.values()])
 
 
-def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
+def rows_of(cls: type[Parameters]) -> Iterator[list[str]]:
+    """Yield the cells of each key of a parameter set: key, value, default, meaning."""
     rows = parameter_rows(cls)
     for f in fields(cls):
         row = rows[f.name]
@@ -70,10 +71,10 @@ def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
 
 def by_kind(union: object, defaults: Mapping[str, str] = MappingProxyType({})) -> list[str]:
     """Return the lines of the table of the keys of each kind; ``defaults`` are known here only."""
-    return markdown([['kind', *_HEADER], *(
+    return markdown([['kind', *HEADER], *(
         [f'`{kind}`', key, value, defaults.get(key.strip('`'), default), meaning]
         for kind, cls in members(union).items()
-        for key, value, default, meaning in _parameters(cls))])
+        for key, value, default, meaning in rows_of(cls))])
 
 
 def _default(default: object, words: str) -> str:

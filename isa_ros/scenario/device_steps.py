@@ -18,8 +18,6 @@ from isa_ros.reu.wiring import mode_of
 import numpy as np
 
 _REQUESTS: Mapping[str, int] = {'clear_fault': HAS_CLEAR_FAULT, 'quick_stop': HAS_QUICK_STOP}
-DEVICE_KEYS = ('enabled', 'mode', *REFERENCES, *_REQUESTS)
-"""The keys of an event that this module reads."""
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,7 @@ from isa_ros.scenario.changes_together import refuse_changes
 from isa_ros.scenario.course_reading import COURSES, tick_at, with_course
 from isa_ros.scenario.fault_courses import RAMP
 from isa_ros.scenario.faults import BODY, BUS, Fault
+from isa_ros.scenario.keys import FAULT
 from isa_ros.scenario.part_faults import PART, part_prefix, supply_values
 from isa_ros.scenario.waveforms import WAVEFORMS
 from isa_ros.surroundings.emergency_line import EMERGENCY_STOP, OPEN
@@ -50,7 +51,6 @@ LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
 TARGETS = (*KINDS, LINK, BUS, BODY, EMERGENCY_STOP)
-_KEYS = ('t_s', *TARGETS, PART, 'fault', 'set', 'until_s', *COURSES)
 
 
 def read_faults(
@@ -82,7 +82,7 @@ def read_faults(
 
 
 def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
-    refuse_unknown(tree, _KEYS, place)
+    refuse_unknown(tree, FAULT, place)
     of, target = _target(tree, place)
     tick = tick_at(tree, 't_s', place, run.step_ns)
     until = tick_at(tree, 'until_s', place, run.step_ns) if 'until_s' in tree else None

@@ -30,6 +30,7 @@ from isa_ros.scenario.changes_together import refuse_changes
 from isa_ros.scenario.fault_reading import read_faults
 from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
 from isa_ros.scenario.figures import figure_of
+from isa_ros.scenario.keys import SCENARIO as SCENARIO_KEYS
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.rig_changes import refuse_stranger, with_loads, with_starts
 from isa_ros.scenario.robots import with_robots
@@ -230,9 +231,7 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     _refuse_robots(tree, run, place)
     tree = with_robots(tree, place)
-    refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', CONTROLLERS,
-               'tracks', 'faults', 'changes'), place)
+    refuse_unknown(tree, SCENARIO_KEYS, place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = with_loads(with_starts(run, tree, place), tree, place)

@@ -20,12 +20,12 @@ from isa_ros.core.device import FORCE, MODES
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.device_steps import (
-    DEVICE_KEYS, mode_before, read_device_step)
+from isa_ros.scenario.device_steps import mode_before, read_device_step
+from isa_ros.scenario.keys import SETPOINT
 from isa_ros.scenario.track import GAIT, ImpedanceSetpoint, MOTIONS, Track, TrackEvent
 from isa_ros.scenario.trot_motion import read_gait
 from isa_ros.scenario.waveforms import (
-    EFFORT, MOVES, POSITION, refuse_amplitude, SetpointMotion, WAVEFORMS)
+    EFFORT, MOVES, OF_SETPOINTS, POSITION, refuse_amplitude, SetpointMotion)
 
 MAX_DURATION = 1e6  # s, a bound against typing errors
 HOLD = 'hold'       # position: the start of the actuator
@@ -72,7 +72,7 @@ def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
            mode: int, position: float) -> TrackEvent:
     """Return a point after one with this mode and position."""
     numbers = tuple(own.name for own in fields(ImpedanceSetpoint))
-    refuse_unknown(tree, ('t_s', *numbers, *_GAINS, *DEVICE_KEYS, *MOTIONS), place)
+    refuse_unknown(tree, SETPOINT, place)
     if 't_s' not in tree:
         raise ConfigError(place.has('lacks t_s'))
     check(f'{place}.t_s', tree['t_s'], {
@@ -106,7 +106,7 @@ def _refuse_incomplete(tree: Tree, given: list[str], place: Place, mode: int) ->
 
 
 def _moves_effort(tree: Tree) -> bool:
-    sections = [tree[name] for name in WAVEFORMS if name in tree]
+    sections = [tree[name] for name in OF_SETPOINTS if name in tree]
     return any(isinstance(own, dict) and own.get(MOVES) == EFFORT for own in sections)
 
 
@@ -130,7 +130,7 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
     refuse_amplitude(section, str(below), actuator.sheet.is_rotary)
     with_default: Tree = {MOVES: POSITION}
     with_default |= section
-    wave = build(WAVEFORMS[given[0]], written(with_default, below), below)
+    wave = build(OF_SETPOINTS[given[0]], written(with_default, below), below)
     wave.refuse_step(run.step_ns, str(below))
     return wave
 

@@ -15,11 +15,11 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.device_steps import DeviceStep
-from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, SetpointMotion, WAVEFORMS
+from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, OF_SETPOINTS, SetpointMotion
 import numpy as np
 
 GAIT = 'gait'
-MOTIONS = (*WAVEFORMS, GAIT)
+MOTIONS = (*OF_SETPOINTS, GAIT)
 _REST = Excursion(0.0, 0.0, 0.0)
 
 
@@ -116,4 +116,4 @@ def event_tree(event: TrackEvent, step_ns: int) -> Tree:
 
 def motion_key(motion: SetpointMotion) -> str:
     """Return the key that a motion has in its event."""
-    return next((name for name, cls in WAVEFORMS.items() if isinstance(motion, cls)), GAIT)
+    return next((name for name, cls in OF_SETPOINTS.items() if isinstance(motion, cls)), GAIT)

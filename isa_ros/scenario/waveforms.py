@@ -182,7 +182,29 @@ class Pulse(Waveform):
         ticks_in(self.width_s, step_ns, f'{where}.width_s')
 
 
+@dataclass(frozen=True, kw_only=True)
+class Way(Waveform):
+    """A way at constant rate to the amplitude, where it stays."""
+
+    ENDS = (0.0, 1.0)
+
+    duration_s: float = parameter('time to the amplitude', 's', gt=0.0, le=1e5)
+
+    def at(self, t_ns: int) -> Excursion:
+        """Return A t/T and A/T, from T on A and 0."""
+        t = t_ns / NS_PER_SECOND
+        if t >= self.duration_s:
+            return self._excursion(1.0, 0.0)
+        return self._excursion(t / self.duration_s, 1.0 / self.duration_s)
+
+    def refuse_step(self, step_ns: int, where: str) -> None:
+        """Refuse an end between two setpoints."""
+        ticks_in(self.duration_s, step_ns, f'{where}.duration_s')
+
+
 WAVEFORMS: dict[str, type[Waveform]] = {'sine': Sine, 'chirp': Chirp, 'pulse': Pulse}
+"""Of setpoints, and of the values of faults."""
+OF_SETPOINTS: dict[str, type[Waveform]] = {**WAVEFORMS, 'ramp': Way}
 
 
 def refuse_amplitude(section: Tree, where: str, is_rotary: bool) -> None:

@@ -4,7 +4,7 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.scenario.waveforms import Chirp, Pulse, SetpointMotion, Sine
+from isa_ros.scenario.waveforms import Chirp, Pulse, SetpointMotion, Sine, Way
 import pytest
 from scipy.integrate import quad
 
@@ -61,6 +61,21 @@ def test_a_motion_of_the_effort_moves_nothing_else(motion: Sine | Chirp) -> None
         assert added.position == added.velocity == 0.0
     twin = type(motion)(**{**motion.tree(), 'moves': 'position', 'amplitude': 1.0})
     assert added.effort == motion.amplitude * twin.at(t_ns).position != 0.0
+
+
+def test_a_ramp_goes_at_one_rate_and_stays() -> None:
+    """0.3 m in 2 s, and back as far: positions of both signs, and as an effort."""
+    for amplitude in (0.3, -0.3):
+        way = Way(moves='position', amplitude=amplitude, duration_s=2.0)
+        assert way.at(0) == (0.0, 0.5 * amplitude, 0.0)
+        assert way.at(500 * MS) == (0.25 * amplitude, 0.5 * amplitude, 0.0)
+        assert way.at(2000 * MS) == way.at(10**13) == (amplitude, 0.0, 0.0)
+        low, high = sorted((0.0, amplitude))
+        assert [end.position for end in way.reach()] == [low, high]
+    force = Way(moves='effort', amplitude=40.0, duration_s=4.0)
+    assert force.at(3000 * MS) == (0.0, 0.0, 30.0)
+    with pytest.raises(ConfigError, match='ramp.duration_s = 4 s, must be '):
+        force.refuse_step(3 * MS, 'ramp')
 
 
 def test_a_pulse_is_up_for_its_width_in_every_period() -> None:
