@@ -9,6 +9,7 @@ from hypothesis import settings
 import pytest
 from tests.approximation import refusing_approx
 from tests.garbage import uncollected
+from tests.quick import is_quick, left_out
 
 # The first call of a kernel compiles it, which would exceed a deadline; the same examples on
 # every run, so that a failure is reproducible.
@@ -20,8 +21,9 @@ _NO_DOMAIN = 'none: tests.ros.domains.held_domain'
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option that `./isa test --long` passes on."""
+    """Add the options that `./isa test` passes on."""
     parser.addoption('--long', action='store_true', help='run the tests marked long, no others')
+    parser.addoption('--quick', action='store_true', help='run what tests/quick.py says')
 
 
 def pytest_configure() -> None:
@@ -47,9 +49,12 @@ def pytest_collection() -> Generator[None, object, object]:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the long tests, or all others; a worker's tests are sorted for the scheduler."""
     chosen, others = [], []
+    names = left_out() if config.getoption('--quick') else None
     for item in items:
         is_long = item.get_closest_marker('long') is not None
-        (chosen if is_long == config.getoption('--long') else others).append(item)
+        is_chosen = is_long == config.getoption('--long') and (
+            names is None or is_quick(item, names))
+        (chosen if is_chosen else others).append(item)
     if others:
         config.hook.pytest_deselected(items=others)
         items[:] = chosen
