@@ -70,7 +70,7 @@ NOT_RUN = {
     'actuator': {'source .venv/bin/activate': ENDLESS,
                  'ros2 topic echo /smart_manifold/joint_states': ROS2,
                  'ros2 param describe /smart_manifold reu.force.kp': ROS2},
-    'bench': {'./isa bench --out docs': MINUTES},
+    'bench': {'./isa bench --against feb533f3 --first-run --out docs': MINUTES},
     'bodies': {'$ python -m isa_ros.examples.mjcf_robot ur5e.xml shoulder_lift_joint elbow_joint':
                FOREIGN, 'class Mechanism(Protocol):': 'signatures, no program'},
     'canopen': {"pip install -e '.[canopen]'": INSTALLS, 'modprobe vcan': ROOT,
@@ -134,6 +134,7 @@ NOT_RUN = {
              'ros2 topic pub --once /joint_command sensor_msgs/msg/JointState \\': ROS2},
     'sensitivity': {'./isa validate --sensitivity --out docs': MINUTES},
     'servo_valve': {'./isa study servo_valve --out docs': MINUTES},
+    'scenario_file': {'name: lower': 'tests/docs/test_scenario_file.py reads it'},
     'speed': {'.venv/bin/python -m pip install -r requirements-bench.txt': INSTALLS},
     'studies': {'./isa study --all --out docs': MINUTES},
     'temperature': {'./isa study temperature --out docs': MINUTES},
