@@ -1,8 +1,8 @@
-"""An inertial measurement unit on a link of any body: its data sheet, and what it reads."""
+"""An inertial measurement unit on a link of any body: data sheet, errors, and what it reads."""
 
 from dataclasses import dataclass
 
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ParameterError
 
@@ -43,6 +43,33 @@ class InertialUnitSheet(Parameters):
                 f'{where}.rate_hz = {self.rate_hz:g} Hz, its period must be a multiple of '
                 f'step_ms = {step_ns / 1e6:g} ms')
         return ticks * step_ns
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitErrors(Parameters):
+    """Errors of an inertial unit; noise and bias are first those of its data sheet."""
+
+    accelerometer_sigma: float = parameter(
+        'white noise of a reading, standard deviation', 'm/s2', changeable=True, ge=0.0, le=100.0)
+    accelerometer_bias: float = parameter(
+        'constant error of each axis', 'm/s2', changeable=True, ge=-100.0, le=100.0)
+    gyro_sigma: float = parameter(
+        'white noise of a reading, standard deviation', 'rad/s', changeable=True, ge=0.0, le=10.0)
+    gyro_bias: float = parameter(
+        'constant error of each axis', 'rad/s', changeable=True, ge=-10.0, le=10.0)
+    scale: float = parameter(
+        'what is read over what is there, before noise and bias', '1', changeable=True, ge=-2.0,
+        le=2.0)
+    stuck: float = fault('1: the reading stays as it is', '1', ge=0.0, le=1.0)
+    lost: float = fault('1: the wire is broken, all numbers are 0', '1', ge=0.0, le=1.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a unit that is stuck or lost by a part."""
+        super().__post_init__()
+        for name in ('stuck', 'lost'):
+            value = getattr(self, name)
+            if value not in (0.0, 1.0):
+                raise ParameterError(f'{name} = {value:g}, must be 0 or 1')
 
 
 def fields_of_unit(name: str) -> tuple[str, str]:

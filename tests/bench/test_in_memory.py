@@ -51,7 +51,9 @@ def test_with_and_without_are_run_in_turn(monkeypatch: pytest.MonkeyPatch):
     clock, order = [0.0], []
 
     def work(scenario: Any) -> Any:
-        is_on = scenario.run.actuators[0].sheet.reu.protection.switch == 'on'
+        own = scenario.run.actuators[0].sheet.reu.protection
+        is_on = own.switch == 'on'
+        assert own.overload.trip == (0.96 if is_on else 0.0)
 
         def run() -> None:
             order.append(is_on)
@@ -59,5 +61,18 @@ def test_with_and_without_are_run_in_turn(monkeypatch: pytest.MonkeyPatch):
         return run
     monkeypatch.setattr(in_memory, '_kernel_work', work)
     monkeypatch.setattr(in_memory.time, 'process_time', lambda: clock[0])
-    assert in_memory._watching_percent({'overload.trip': 1.0}) == [100.0] * 21
+    assert in_memory._watching_percent({'overload.trip': 0.96}) == [100.0] * 21
     assert order == [True, False] * 22
+
+
+def test_the_two_rows_of_the_protection_are_as_shipped_and_with_every_level(
+        monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(in_memory, '_kernel_seconds', lambda drop: 5e-5)
+    monkeypatch.setattr(in_memory, '_simulated', lambda simulation: 7e-5)
+    monkeypatch.setattr(in_memory, '_added_seconds', lambda drop: 1e-5)
+    monkeypatch.setattr(in_memory, '_sweep_rows', lambda: [])
+    monkeypatch.setattr(
+        in_memory, '_watching_percent', lambda levels: [1.5 + len(levels), 2.0, 1.0])
+    shipped, every = in_memory.in_memory_rows()[1:3]
+    assert (shipped.value, shipped.highest, shipped.aim) == (1.5, 2.0, None)
+    assert (every.value, every.highest, str(every.aim)) == (2.0, 1.5 + len(every_level()), '<= 8')

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.tree import Tree
 from isa_ros.config.text.key_tables import KeyTable
-from isa_ros.config.text.keys import Key, ParameterSet, TEXT
+from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT
 from isa_ros.config.text.sections import Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import RobotUnit, vector
-from isa_ros.surroundings.inertial_unit import InertialUnitSheet
+from isa_ros.surroundings.inertial_unit import InertialUnitSheet, UnitErrors
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,14 @@ class UnitConfig:
     name: str
     link: str
     sheet: InertialUnitSheet
+    can_fail: bool = False
+    """Whether its errors are among the values that change during a run."""
 
 
 UNIT = KeyTable((
-    Key('link', TEXT, 'link of the URDF; its axes are those of the unit'),),
+    Key('link', TEXT, 'link of the URDF; its axes are those of the unit'),
+    Key('can_fail', FLAG, 'whether its errors may change during a run', None,
+        of=lambda own: own.can_fail or None)),
     rest=Key('sheet', ParameterSet(InertialUnitSheet), 'the unit'))
 
 
@@ -54,4 +58,14 @@ def robot_unit(own: UnitConfig, tree: Tree, step_ns: int, key: int) -> RobotUnit
     return RobotUnit(
         own.name, link, vector(at), frame.rotation, sheet.accelerometer_sigma,
         sheet.accelerometer_bias, sheet.gyro_sigma, sheet.gyro_bias,
-        sheet.period_ns(step_ns, own.name), key)
+        sheet.period_ns(step_ns, own.name), key, errors_of(own))
+
+
+def errors_of(own: UnitConfig) -> UnitErrors | None:
+    """Return the errors of a unit as they are at its start; None: it cannot fail."""
+    if not own.can_fail:
+        return None
+    sheet = own.sheet
+    return UnitErrors(
+        accelerometer_sigma=sheet.accelerometer_sigma, gyro_sigma=sheet.gyro_sigma,
+        accelerometer_bias=sheet.accelerometer_bias, gyro_bias=sheet.gyro_bias, scale=1.0)

@@ -21,7 +21,7 @@ from isa_ros.config.robots.start import (
     coordinates, refuse_start, robot_start, RobotStartConfig, root_pose, START, start_of)
 from isa_ros.config.robots.tree import Tree, tree_of
 from isa_ros.config.robots.tree_text import TREE, tree_from
-from isa_ros.config.robots.units import refuse_units, robot_unit, UNIT, UnitConfig
+from isa_ros.config.robots.units import errors_of, refuse_units, robot_unit, UNIT, UnitConfig
 from isa_ros.config.robots.urdf import load_urdf
 from isa_ros.config.runs.body_config import BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
@@ -32,6 +32,7 @@ from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field
 from isa_ros.core.noise import noise_key
+from isa_ros.core.parameter import Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -39,7 +40,8 @@ from isa_ros.surroundings.bodies.robot.messages import robot_messages
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
-    JointLinkage, matrix, Push, RobotDrive, RobotSheet, RobotUnit, vector)
+    JointLinkage, matrix, RobotDrive, RobotSheet, RobotUnit, vector)
+from isa_ros.surroundings.bodies.robot.unit_errors import changing_values
 from isa_ros.surroundings.impact import contact_time
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
@@ -105,7 +107,7 @@ class RobotConfig(BodyConfig):
             name=name, urdf=Path(values['urdf']).name, tree=tree, drives=drives,
             joints=tuple((own.name, own.actuator) for own in drives), passive=tuple(passive),
             contacts=contacts, start=start_of(values['start'], tree, None, place / 'start'),
-            imus=tuple(UnitConfig(own, unit['link'], unit['sheet'])
+            imus=tuple(UnitConfig(own, unit['link'], unit['sheet'], bool(unit['can_fail']))
                        for own, unit in values['imus'].items()))
         refuse_units(robot.imus, tree, step_ns, place / 'imus')
         if is_checked:
@@ -211,9 +213,11 @@ class RobotConfig(BodyConfig):
             f'{contact.name} of {self.called}', mass, contact.ground.stiffness, step_ns)
 
     @property
-    def changing(self) -> Push | None:
-        """Return the forces from outside on a free root, as scenarios may change them."""
-        return Push() if self.sheet.is_free else None
+    def changing(self) -> Parameters | None:
+        """Return what scenarios may change: forces on a free root, errors of its units."""
+        errors = {own.name: errors_of(own) for own in self.imus}
+        return changing_values(self.sheet.is_free, {
+            name: own for name, own in errors.items() if own is not None})
 
     def units(self, step_ns: int, seed: int) -> list[RobotUnit]:
         """Return its inertial units."""

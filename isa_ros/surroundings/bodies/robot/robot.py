@@ -6,6 +6,7 @@ position (m) or shaft angle (rad). Force > 0 pushes the actuator out.
 """
 
 from collections.abc import Sequence
+from dataclasses import fields
 import math
 
 from isa_ros.core.bound import Bound, Rebound
@@ -25,10 +26,12 @@ from isa_ros.surroundings.bodies.robot.records import (
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
+from isa_ros.surroundings.bodies.robot.unit_errors import changing_values, write_errors
 from isa_ros.surroundings.inertial_unit import AXES
 from isa_ros.surroundings.vectors import first_broken
 import numpy as np
 
+PUSHES = tuple(each.name for each in fields(Push))
 ROUNDING = 1e-9     # of the length of a quaternion in a sheet
 
 
@@ -56,7 +59,9 @@ class Robot(KernelBody):
             step_ns, range(k) if rows is None else rows,
             sample_fields(sheet, [unit.name for unit in units]), release_ns)
         _refuse_start(sheet, start)
-        self._is_free = sheet.is_free
+        self._units = units
+        self._changing = changing_values(sheet.is_free, {
+            own.name: own.errors for own in units if own.errors is not None}) or Parameters()
         self._names = state_names(sheet)
         self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
         records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
@@ -121,17 +126,22 @@ class Robot(KernelBody):
 
     @property
     def changing(self) -> Parameters:
-        """Return what may change during a run, as it is at its start: pushes on a free root."""
-        return Push() if self._is_free else Parameters()
+        """Return what may change during a run, as it is at its start (`changing_values`)."""
+        return self._changing
 
-    def change(self, push: Parameters) -> None:
-        """Push the root from the next tick on."""
-        if not isinstance(push, Push):
-            return
-        root = self._arrays.links[0]
-        root['push_force'] = push.push_x, push.push_y, push.push_z
-        root['push_moment'] = push.push_roll, push.push_pitch, push.push_yaw
-        root['is_pushed'] = push != Push()
+    def change(self, values: Parameters) -> None:
+        """Push the root, and let inertial units fail, from the next tick on."""
+        if isinstance(values, Push):
+            push = {name: getattr(values, name) for name in PUSHES}
+            root = self._arrays.links[0]
+            root['push_force'], root['push_moment'] = np.array(list(push.values())).reshape(2, 3)
+            root['is_pushed'] = any(push.values())
+        units, periods = self._shown[1:3]
+        errors = getattr(values, 'imus', None)
+        for k, own in enumerate(self._units):
+            if own.errors is not None:
+                write_errors(getattr(errors, own.name), np.ravel(own.rotation), own.period_ns,
+                             units[k], periods[k:k + 1])
 
     def refuse(self, found: int) -> None:
         """Raise what `advancing` has found; 0: nothing."""

@@ -18,6 +18,7 @@ from typing import Literal, NamedTuple
 
 from isa_ros.core.parameter import fault, Parameters
 from isa_ros.surroundings.ground import Ground
+from isa_ros.surroundings.inertial_unit import UnitErrors
 import numpy as np
 
 Vector = tuple[float, float, float]
@@ -232,3 +233,5 @@ class RobotUnit(NamedTuple):
     """Of its readings, a multiple of the tick."""
     key: int
     """Of its noise (`isa_ros.core.noise.noise_key`)."""
+    errors: UnitErrors | None = None
+    """As they are at the start; None: it cannot fail."""
