@@ -96,6 +96,22 @@ def heard_hang_up() -> Iterator[None]:
 
 
 @pytest.fixture(scope='session')
+def window() -> Iterator[Any]:
+    """Return a window of a browser, which all tests of this process use."""
+    from tests.browser import chromium
+    with chromium() as own:
+        yield own
+
+
+@pytest.fixture
+def browser(window: Any) -> Iterator[Any]:
+    """Return the window, which shows nothing and has reported nothing, as it does afterwards."""
+    yield window
+    window.visit('about:blank', is_drawn=False)
+    window.log()
+
+
+@pytest.fixture(scope='session')
 def compiled_kernels() -> None:
     """Wait until the kernels are compiled."""
     from tests.kernels import compile_kernels

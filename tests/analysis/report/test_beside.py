@@ -15,7 +15,6 @@ from isa_ros.errors import BagError
 from isa_ros.replay.comparison import compared
 import numpy as np
 import pytest
-from tests.browser import chromium
 
 KP = 'actuators.rotor.parameters.reu.force.kp'
 
@@ -56,21 +55,20 @@ def test_differences_of_the_configuration_come_first(page):
     assert '<th>shipped</th><th>soft</th>' in text
 
 
-def test_both_runs_are_drawn_with_their_names_and_states(page):
-    with chromium() as browser:
-        browser.load(page)
-        entries = browser.run("return [...document.querySelectorAll('.legend')]"
-                              ".map(own => [...own.querySelectorAll('span span')]"
-                              '.map(e => e.textContent))')
-        bands = browser.run(
-            "return [...document.querySelectorAll('.band')].map(e => e.textContent)")
-        shown = browser.run("return document.getElementById('range').textContent")
-        browser.run("document.querySelector('main').scrollIntoView()")
-        browser.move('#group-rotor .u-over', 400, 0)
-        browser.wait("return document.getElementById('cursor').textContent !== ''")
-        values = browser.run("return [...document.querySelectorAll('.legend')[1]"
-                             ".querySelectorAll('b')].map(e => e.textContent)")
-        assert browser.log() == []
+def test_both_runs_are_drawn_with_their_names_and_states(browser, page):
+    browser.load(page)
+    entries = browser.run("return [...document.querySelectorAll('.legend')]"
+                          ".map(own => [...own.querySelectorAll('span span')]"
+                          '.map(e => e.textContent))')
+    bands = browser.run(
+        "return [...document.querySelectorAll('.band')].map(e => e.textContent)")
+    shown = browser.run("return document.getElementById('range').textContent")
+    browser.run("document.querySelector('main').scrollIntoView()")
+    browser.move('#group-rotor .u-over', 400, 0)
+    browser.wait("return document.getElementById('cursor').textContent !== ''")
+    values = browser.run("return [...document.querySelectorAll('.legend')[1]"
+                         ".querySelectorAll('b')].map(e => e.textContent)")
+    assert browser.log() == []
     assert entries[1] == ['shipped: estimated', 'soft: estimated']
     assert bands == ['shipped rotor: initialising', 'shipped rotor: enabled',
                      'soft rotor: initialising', 'soft rotor: enabled']

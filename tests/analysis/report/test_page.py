@@ -1,6 +1,5 @@
 """The page of a report in a browser: drawn, read to the sample, zoomed, and deaf to its bag."""
 
-from collections.abc import Iterator
 from pathlib import Path
 import re
 
@@ -12,16 +11,9 @@ from isa_ros.tick.trips import TripWarning
 import pytest
 from tests.analysis.report.test_events import FAULT, RIG
 from tests.bag.golden import GOLDEN, rewrite
-from tests.browser import Browser, chromium
 
 EVIL = '</script><script>window.hacked = 1</script><img src=x onerror="window.hacked = 2">'
 TEXTS = "return [...document.querySelectorAll('.legend')].map(own => own.innerText)"
-
-
-@pytest.fixture(scope='module')
-def browser() -> Iterator[Browser]:
-    with chromium() as own:
-        yield own
 
 
 def page_of(bag: Path, folder: Path) -> Path:
