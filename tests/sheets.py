@@ -69,3 +69,10 @@ def setpoint(**values: float) -> np.void:
     for name, value in values.items():
         command[name] = value
     return command
+
+
+def request(kinds: int, is_enabled: int = 0) -> np.void:
+    """Return a `COMMAND` row without a setpoint."""
+    row = np.zeros(1, COMMAND)[0]
+    row['kinds'], row['is_enabled'] = kinds, is_enabled
+    return row

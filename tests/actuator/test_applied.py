@@ -2,24 +2,16 @@
 
 from isa_ros.core.device import DISABLED, ENABLED, FAULT
 from isa_ros.core.signals import (
-    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP, HAS_SETPOINT, WAS_REFUSED)
+    HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP, HAS_SETPOINT, WAS_REFUSED)
 from isa_ros.scripting.run import load
 from isa_ros.testing import assert_replays
 from isa_ros.tick.trips import TripWarning
-import numpy as np
 import pytest
 from tests.actuator.test_actuator import TICK
 from tests.actuator.test_tuning import run
-from tests.sheets import setpoint, smart_actuator
+from tests.sheets import request, setpoint, smart_actuator
 
 LOST = {'plant.sensors.force.bias': 4000.0}
-
-
-def request(kinds, is_enabled=0):
-    """Return a `COMMAND` row without a setpoint."""
-    row = np.zeros(1, COMMAND)[0]
-    row['kinds'], row['is_enabled'] = kinds, is_enabled
-    return row
 
 
 @pytest.fixture

@@ -2,22 +2,15 @@
 
 from isa_ros.core.conditions import conditions
 from isa_ros.core.device import DISABLED, FAULT
-from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
-import numpy as np
+from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
 import pytest
 from tests.actuator.test_actuator import TICK
 from tests.actuator.test_tuning import run
-from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator
 
 FROZEN, SOUND = {'reu.frozen': 1.0}, {'reu.frozen': 0.0}
 READ = ('position', 'velocity', 'force', 'pressure_a', 'pressure_b', 'spool', 'current',
         'temperature', 'supply_pressure')
-
-
-def request(kinds, is_enabled=0):
-    row = np.zeros(1, COMMAND)[0]
-    row['kinds'], row['is_enabled'] = kinds, is_enabled
-    return row
 
 
 def moving(sheet=None):

@@ -110,3 +110,8 @@ class Master:
             if is_reached(word):
                 return word
         raise AssertionError(f'status word {word:#06x} after {most} ticks')
+
+
+def without_supply(rig, is_low):
+    """Let the supply fail or come back."""
+    rig.simulation.tune('supply', {'pressure_mpa': 1.0 if is_low else 20.7})

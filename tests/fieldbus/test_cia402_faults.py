@@ -9,7 +9,7 @@ import pytest
 from .master_402 import (
     CSV, ENABLE, enabled, IMPEDANCE, is_in, POSITION, RESET, SHUTDOWN, state, SWITCH_ON,
     VOLTAGE_OFF)
-from .rig import Master, Rig
+from .rig import Master, Rig, without_supply
 
 LATE = 1 << 13
 
@@ -121,11 +121,6 @@ def test_a_trip_of_the_device_is_a_fault_with_its_code(condition):
     first = next(one for one in rig.emergencies if one.code == own.code)
     assert int.from_bytes(first.data, 'little') >> BITS[condition] & 1
     assert rig.sample['device_state'] == 5
-
-
-def without_supply(rig, is_low):
-    """Let the supply fail or come back."""
-    rig.simulation.tune('supply', {'pressure_mpa': 1.0 if is_low else 20.7})
 
 
 def faulted():

@@ -1,21 +1,13 @@
 """A stop request: the signals that set it, and what they do before and after."""
 
-from collections.abc import Iterator
 import os
 import signal
 
 from isa_ros.processes.stopping import StopRequest
 import pytest
 
+pytestmark = pytest.mark.usefixtures('heard_hang_up')
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-
-
-@pytest.fixture(autouse=True)
-def not_of_nohup() -> Iterator[None]:
-    """Set the default of SIGHUP, which pytest ignores where nohup has started it."""
-    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    yield
-    signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.parametrize('number', SIGNALS)

@@ -4,7 +4,6 @@ import math
 from pathlib import Path
 
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked
@@ -17,18 +16,6 @@ DROP = CONFIG / 'scenarios' / 'drop.yaml'
 STEP = CONFIG / 'scenarios' / 'step.yaml'
 TROT = CONFIG / 'scenarios' / 'trot.yaml'
 TROT_LEG = CONFIG / 'scenarios' / 'trot_leg.yaml'
-
-
-@pytest.fixture(scope='module')
-def leg() -> RunConfig:
-    """Return the shipped leg."""
-    return load_run(CONFIG / 'leg.yaml')
-
-
-@pytest.fixture(scope='module')
-def rotary() -> RunConfig:
-    """Return the shipped rotary rig."""
-    return load_run(CONFIG / 'rig_rotary.yaml')
 
 
 def rows(scenario: Scenario, tick: int) -> np.ndarray:

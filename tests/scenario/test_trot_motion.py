@@ -5,7 +5,6 @@ from pathlib import Path
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.sections import Place
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
@@ -22,18 +21,6 @@ CONFIG = Path(__file__).parents[2] / 'config'
 MS = 1_000_000
 STRIDE_NS = round(1e9 / 1.7)
 PLACE = Place('s.yaml', 'gait')
-
-
-@pytest.fixture(scope='module')
-def rotary() -> RunConfig:
-    """Return the shipped rotary rig."""
-    return load_run(CONFIG / 'rig_rotary.yaml')
-
-
-@pytest.fixture(scope='module')
-def leg() -> RunConfig:
-    """Return the shipped leg."""
-    return load_run(CONFIG / 'leg.yaml')
 
 
 def of(run: RunConfig, name: str, **values: float | str) -> GaitMotion:

@@ -1,14 +1,15 @@
 """What quiet ports of any number of actuators share, against the plain formulas  (L15, L16)."""
 
+from functools import partial
 import math
 
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS
-from isa_ros.loads.port import load_acceleration
 from isa_ros.surroundings import port
 import numpy as np
 import pytest
+from tests.surroundings.port_copy import end_of_copy
 
 TICK = 1e-3  # s
 MIDDLES = (np.arange(FORCE_WINDOWS) + 0.5) * TICK / FORCE_WINDOWS
@@ -83,7 +84,8 @@ def test_the_copies_of_k_rows_end_the_tick_where_the_body_does(k: int) -> None:
     speed = (ports['v0'] + TICK * ports['a0'])[rows] + missed_speed
     port.match_ports(ports, rows, TICK, state, place, speed)
     for j, row in enumerate(rows):
-        x, v = end_of_copy(ports[row], state['force'][j], state['slope'][j])
+        x, v = end_of_copy(ports[row], partial(
+            port.assumed_force, state['force'][j], state['slope'][j]), TICK, 2000)
         assert x == pytest.approx(place[j], abs=1e-5 * missed[j])
         assert v == pytest.approx(speed[j], abs=1e-5 * missed_speed[j])
     filled = ['a_bias', 'jerk']
@@ -91,23 +93,6 @@ def test_the_copies_of_k_rows_end_the_tick_where_the_body_does(k: int) -> None:
         assert (ports[name] == before[name]).all()
     others = np.delete(np.arange(2 * k + 1), rows)
     assert (ports[others] == before[others]).all()
-
-
-def end_of_copy(own: np.void, force: float, slope: float) -> tuple[float, float]:
-    """Return place and speed of a port's copy after the tick, by 2000 Runge-Kutta steps."""
-    x, v, h = float(own['x0']), float(own['v0']), TICK / 2000
-
-    def rate(t: float, x: float, v: float) -> float:
-        return float(load_acceleration(t, x, v, port.assumed_force(force, slope, t), own))
-    for i in range(2000):
-        t = i * h
-        a_1 = rate(t, x, v)
-        a_2 = rate(t + 0.5 * h, x + 0.5 * h * v, v + 0.5 * h * a_1)
-        a_3 = rate(t + 0.5 * h, x + 0.5 * h * (v + 0.5 * h * a_1), v + 0.5 * h * a_2)
-        a_4 = rate(t + h, x + h * (v + 0.5 * h * a_2), v + h * a_3)
-        x += h * v + h * h / 6.0 * (a_1 + a_2 + a_3)
-        v += h / 6.0 * (a_1 + 2.0 * (a_2 + a_3) + a_4)
-    return x, v
 
 
 def test_the_assumed_force_of_arrays_is_that_of_each_number() -> None:

@@ -7,7 +7,7 @@ from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.device.faults import BUS_LOST
 import pytest
 
-from ..rig import Master, Rig
+from ..rig import Master, Rig, without_supply
 
 INIT, DISABLED, HOLD, ACTIVE, RESET = 0b0000, 0b0001, 0b0011, 0b0111, 0b1000
 OPEN_LOOP, CLOSED_LOOP, PQ, AXIS_VELOCITY, AXIS_POSITION = 1, 2, 5, 7, 9
@@ -165,10 +165,6 @@ def test_a_setpoint_beyond_its_range_is_limited_and_says_so(rig):
 
 
 # Faults.
-
-def without_supply(rig, is_low):
-    rig.simulation.tune('supply', {'pressure_mpa': 1.0 if is_low else 20.7})
-
 
 @pytest.mark.parametrize(('word', 'fault', 'after'), [
     (INIT, 'FAULT_INIT', 'INIT'), (DISABLED, 'FAULT_DISABLED', 'DISABLED'),

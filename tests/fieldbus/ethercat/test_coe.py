@@ -4,19 +4,11 @@ import struct
 
 from isa_ros.fieldbus.device import abort
 import pytest
-from tests.fieldbus.ethercat.raw_master import OP, PREOP, RawMaster
+from tests.fieldbus.ethercat.raw_master import OP, RawMaster
 from tests.fieldbus.toys import LONG_TEXT
 
 ROOM, SEGMENT = 240, 247
 """Bytes of data in a normal transfer and in a segment of a mailbox of 256."""
-
-
-@pytest.fixture
-def master() -> RawMaster:
-    """Return a slave in PREOP."""
-    found = RawMaster()
-    found.bring_up(PREOP)
-    return found
 
 
 def aborted(answer: bytes) -> int:

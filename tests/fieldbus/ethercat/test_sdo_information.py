@@ -4,15 +4,7 @@ import struct
 
 from isa_ros.fieldbus.device import abort
 import pytest
-from tests.fieldbus.ethercat.raw_master import PREOP, RawMaster
-
-
-@pytest.fixture
-def master() -> RawMaster:
-    """Return a slave in PREOP."""
-    found = RawMaster()
-    found.bring_up(PREOP)
-    return found
+from tests.fieldbus.ethercat.raw_master import RawMaster
 
 
 def ask(master: RawMaster, operation: int, content: bytes) -> tuple[int, int, bytes]:

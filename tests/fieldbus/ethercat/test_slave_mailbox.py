@@ -10,14 +10,6 @@ from tests.fieldbus.ethercat.raw_master import INIT, PREOP, RawMaster
 UPLOAD = struct.pack('<HBHBI', 0x2000, 0x40, 0x1000, 0, 0)
 
 
-@pytest.fixture
-def master() -> RawMaster:
-    """Return a slave in PREOP."""
-    found = RawMaster()
-    found.bring_up(PREOP)
-    return found
-
-
 def raw_fetch(master: RawMaster) -> bytes:
     """Return a mail with its header."""
     return master.read(0x1100, 256)

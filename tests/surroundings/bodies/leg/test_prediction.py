@@ -9,7 +9,6 @@ from functools import cache
 import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.loads.port import load_acceleration
 from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
 from isa_ros.surroundings.bodies.leg.motion import (
     continuous, joint_speeds, leg_motion, LEG_STATE, leg_step)
@@ -17,6 +16,7 @@ from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record
 import numpy as np
 import pytest
 from tests.legs import leg_sheet
+from tests.surroundings.port_copy import end_of_copy
 
 MS = 1_000_000
 TICK, STEPS = 1e-3, 50  # s, plant steps of it
@@ -63,20 +63,7 @@ def of_the_leg(leg: Leg) -> tuple[np.ndarray, np.ndarray, float]:
 def of_the_copy(leg: Leg, port: np.void, j: int) -> tuple[float, float]:
     """Return place and speed of a port's copy after the tick, as an actuator integrates it."""
     state = np.frombuffer(leg.snapshot(), LEG_STATE, 1, TIME_BYTES)[0]
-    x, v, h = float(port['x0']), float(port['v0']), TICK / STEPS
-
-    def rate(t: float, x: float, v: float) -> float:
-        return float(load_acceleration(
-            t, x, v, state['force'][j] + t * state['slope'][j], port))
-    for i in range(STEPS):
-        t = i * h
-        a_1 = rate(t, x, v)
-        a_2 = rate(t + 0.5 * h, x + 0.5 * h * v, v + 0.5 * h * a_1)
-        a_3 = rate(t + 0.5 * h, x + 0.5 * h * (v + 0.5 * h * a_1), v + 0.5 * h * a_2)
-        a_4 = rate(t + h, x + h * (v + 0.5 * h * a_2), v + h * a_3)
-        x += h * v + h * h / 6.0 * (a_1 + a_2 + a_3)
-        v += h / 6.0 * (a_1 + 2.0 * (a_2 + a_3) + a_4)
-    return x, v
+    return end_of_copy(port, lambda t: state['force'][j] + t * state['slope'][j], TICK, STEPS)
 
 
 @pytest.mark.parametrize('j', range(3), ids=JOINTS)
