@@ -1,6 +1,5 @@
 """The end of a run under a fault: its message, its delay, and what is left behind."""
 
-import hashlib
 from pathlib import Path
 import re
 import time
@@ -12,6 +11,7 @@ from isa_ros.processes.processes import END_S
 from mcap.writer import MCAP0_MAGIC
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
+from tests.ros.bags import mcap_file
 from tests.ros.started import DEADLINE_S, is_alive, RIG, Started, wait_for
 
 KILL_SEEN_S = 1.0  # promised: a process that has ended is noticed within it
@@ -95,11 +95,6 @@ def shared_memory(pid: int) -> set[str]:
     return set(_SHARED_MEMORY.findall(Path(f'/proc/{pid}/maps').read_text()))
 
 
-def mcap_file(bag: Path) -> Path:
-    """Return the recorder's file."""
-    return bag / f'{bag.name}_0.mcap'
-
-
 def wait_for_tick_0(bag: Path, run: Started) -> None:
     """Wait until the bag exists: all participants have answered the hello."""
     wait_for(lambda: (bag / 'metadata.yaml').exists() or not run.is_running(), 'tick 0')
@@ -107,16 +102,11 @@ def wait_for_tick_0(bag: Path, run: Started) -> None:
 
 
 def wait_for_chunk(bag: Path, run: Started) -> None:
-    """Wait until the recorder has written a chunk."""
+    """Wait until the recorder has written a chunk, the whole of it."""
     wait_for_tick_0(bag, run)
-    before = n_bytes(bag)
-    wait_for(lambda: n_bytes(bag) > before or not run.is_running(), 'a chunk')
+    before = Bag(bag).n_messages
+    wait_for(lambda: Bag(bag).n_messages > before or not run.is_running(), 'a chunk')
     assert run.is_running(), run.errors
-
-
-def n_bytes(bag: Path) -> int:
-    """Return the size of the files of a bag, which grow by whole chunks."""
-    return sum(file.stat().st_size for file in bag.glob('*.mcap'))
 
 
 def assert_replays(bag: Path, is_whole: bool = True) -> int:
@@ -149,11 +139,6 @@ class ClockListener:
             clock = taken[0].clock
             self._latest_ns = clock.sec * ONE_SECOND_NS + clock.nanosec
         return self._latest_ns
-
-
-def sha256(bag: Path) -> str:
-    """Return the SHA-256 of the recorded messages."""
-    return hashlib.sha256(mcap_file(bag).read_bytes()).hexdigest()
 
 
 def with_timeout(path: Path, seconds: float) -> Path:

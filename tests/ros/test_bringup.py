@@ -12,7 +12,8 @@ from isa_ros.run.options import Request
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import FluidPressure
-from tests.ros.faults import sha256, wait_for_tick_0
+from tests.ros.bags import sha256
+from tests.ros.faults import wait_for_tick_0
 from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, LEG, RIG, started
 
 pytestmark = pytest.mark.ros

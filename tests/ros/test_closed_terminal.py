@@ -28,9 +28,7 @@ def test_a_run_ends_with_130_and_a_whole_bag(domain, tmp_path):
         if select.select([terminal], [], [], 0.0)[0]:
             shown += os.read(terminal, 4096)
         return b't = ' in shown
-    wait_for(has_progress, 'the progress')
-    os.close(terminal)
-    ended = []
+    ended: list[int] = []
 
     def has_ended() -> bool:
         done, status = os.waitpid(pid, os.WNOHANG)
@@ -38,9 +36,12 @@ def test_a_run_ends_with_130_and_a_whole_bag(domain, tmp_path):
             ended.append(os.waitstatus_to_exitcode(status))
         return bool(ended)
     try:
+        wait_for(has_progress, 'the progress')
+        os.close(terminal)
         wait_for(has_ended, 'the end of the run')
     finally:
         if not ended:
             os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
     assert ended == [130]
     assert 'message_count' in (bag / 'metadata.yaml').read_text()

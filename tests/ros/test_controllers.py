@@ -17,6 +17,7 @@ from msg_adapters import event
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState
+from tests.ros.bags import sha256
 from tests.ros.domains import held_domain
 from tests.ros.in_millimetres import InMillimetres
 from tests.ros.started import bringup, LEG, started, wait_for
@@ -32,10 +33,6 @@ def record(bag: Path, *options: str) -> str:
     with bringup(bag, '--controller', 'sway', *options) as run:
         assert run.exit_code() == 0, run.errors
     return sha256(bag)
-
-
-def sha256(bag: Path) -> str:
-    return hashlib.sha256((bag / 'bag_0.mcap').read_bytes()).hexdigest()
 
 
 @pytest.fixture(scope='module')

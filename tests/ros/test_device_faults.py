@@ -1,24 +1,17 @@
 """Faults of the device on nodes: the bytes of one process, and values set while a run goes on."""
 
-import hashlib
-from pathlib import Path
-
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.replay.replay import recorded_inputs, replay
 from isa_ros.scripting.run import load
 import pytest
+from tests.ros.bags import sha256
 from tests.ros.started import bringup, RIG, rig_until_stopped
 from tests.ros.tuner import Tuner
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 FAULTS = find('device_faults.yaml', SCENARIOS)
 SECONDS = 0.4
-
-
-def sha256(bag: Path) -> str:
-    path, = bag.glob('*.mcap')
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def test_a_scenario_of_faults_gives_one_sha256_in_memory_in_one_process_and_in_many(

@@ -7,7 +7,8 @@ import subprocess
 import sys
 
 import pytest
-from tests.ros.faults import sha256, wait_for_chunk, WHEEL_SINE
+from tests.ros.bags import sha256
+from tests.ros.faults import wait_for_chunk, WHEEL_SINE
 from tests.ros.started import bringup, DEADLINE_S
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

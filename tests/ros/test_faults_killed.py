@@ -4,8 +4,9 @@ import os
 import signal
 
 import pytest
+from tests.ros.bags import mcap_file
 from tests.ros.faults import (
-    assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S, mcap_file,
+    assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S,
     wait_for_chunk)
 from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, wait_for
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import signal
 
 import pytest
+from tests.ros.bags import sha256
 from tests.ros.faults import (
-    assert_replays, Fault, sha256, wait_for_chunk, wait_for_tick_0, WHEEL_SINE, with_timeout)
+    assert_replays, Fault, wait_for_chunk, wait_for_tick_0, WHEEL_SINE, with_timeout)
 from tests.ros.started import bringup, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

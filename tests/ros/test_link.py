@@ -1,13 +1,13 @@
 """A run over lossy links: one sha256 in memory, in one process, in several, and replayed."""
 
 from collections.abc import Iterator
-import hashlib
 from pathlib import Path
 
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.replay.replay import replay
 import pytest
+from tests.ros.bags import sha256
 from tests.ros.domains import held_domain
 from tests.ros.started import bringup, LEG
 
@@ -18,10 +18,6 @@ VALUES = {
     'link.jitter_us': 100, 'link.loss': 0.2, 'link.watchdog_ms': 4,
     'actuators.hfe.link.loss': 0.5}
 OPTIONS = [part for key, value in VALUES.items() for part in ('--set', f'{key}={value}')]
-
-
-def sha256(bag: Path) -> str:
-    return hashlib.sha256((bag / f'{bag.name}_0.mcap').read_bytes()).hexdigest()
 
 
 @pytest.fixture(scope='module')

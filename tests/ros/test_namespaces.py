@@ -3,7 +3,8 @@
 import signal
 
 import pytest
-from tests.ros.faults import assert_replays, mcap_file, wait_for_tick_0, WHEEL_SINE
+from tests.ros.bags import mcap_file
+from tests.ros.faults import assert_replays, wait_for_tick_0, WHEEL_SINE
 from tests.ros.started import bringup, RIG, started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

@@ -6,7 +6,6 @@ The reference is one process; each of the other ways is compared with it.
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-import hashlib
 import math
 import os
 from pathlib import Path
@@ -18,6 +17,7 @@ import time
 
 import pytest
 from tests.disturbed import disturbed_run, OPTIONS, SEED as RUN_SEED, TICKS
+from tests.ros.bags import sha256
 from tests.ros.domains import held_domain
 from tests.ros.hosts import ADDRESSES, Host, two_hosts, two_lossy_hosts, why_no_hosts
 from tests.ros.started import bringup, DROP, LEG, started, wait_for
@@ -28,10 +28,6 @@ RUN = ('--scenario', str(DROP), '--duration', f'{TICKS * 1e-3}', '--join-timeout
 CORES = 2
 STOP_S = 2.0  # less than the leg's tick_timeout_s
 LOSS, SEED = 0.01, 4
-
-
-def sha256(bag: Path) -> str:
-    return hashlib.sha256((bag / f'{bag.name}_0.mcap').read_bytes()).hexdigest()
 
 
 def record(bag: Path, *options: str, prefix: Sequence[str] = ()) -> None:

@@ -5,8 +5,8 @@ from pathlib import Path
 from isa_ros.scripting.run import load
 import pytest
 from tests.parts import written
+from tests.ros.bags import sha256
 from tests.ros.started import bringup
-from tests.ros.test_one_sha256 import sha256
 
 
 @pytest.mark.ros

@@ -1,19 +1,13 @@
 """The quadruped's trot on nodes: the same bytes as in Python."""
 
-import hashlib
-from pathlib import Path
-
 import isa_ros
 import pytest
+from tests.ros.bags import sha256
 from tests.ros.started import bringup, ROOT
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 CONFIG = ROOT / 'config' / 'quadruped.yaml'
 SCENARIO = ROOT / 'config' / 'scenarios' / 'quadruped_jolt.yaml'
-
-
-def digest(bag: Path) -> str:
-    return hashlib.sha256((bag / 'bag_0.mcap').read_bytes()).hexdigest()
 
 
 def test_processes_one_process_and_python_give_the_same_bytes(domain, tmp_path):
@@ -29,4 +23,4 @@ def test_processes_one_process_and_python_give_the_same_bytes(domain, tmp_path):
         with bringup(bag, '--scenario', str(SCENARIO), '--duration', '0.06', *options, *way,
                      config=CONFIG) as run:
             assert run.exit_code() == 0, run.errors
-    assert digest(bags[0]) == digest(bags[1]) == digest(bags[2])
+    assert sha256(bags[0]) == sha256(bags[1]) == sha256(bags[2])

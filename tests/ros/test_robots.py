@@ -13,7 +13,8 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
-from tests.ros.faults import assert_replays, mcap_file
+from tests.ros.bags import mcap_file
+from tests.ros.faults import assert_replays
 from tests.ros.spinning import Spinning
 from tests.ros.started import bringup, started, wait_for
 from tests.scripting.test_robots import HOP, PAIR
