@@ -17,6 +17,7 @@ from isa_ros.config.runs.actuator_config import ACTUATOR
 from isa_ros.config.runs.emergency_stops import GROUP
 from isa_ros.config.runs.external_config import ExternalConfig
 from isa_ros.config.runs.leg_config import LegConfig, LegStart
+from isa_ros.config.runs.publishing import PUBLISH_KEYS
 from isa_ros.config.runs.recording import RECORD, Storage
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import RUN
@@ -88,7 +89,7 @@ def page(text: str) -> str:
         'part': by_kind(Part), 'oil': parameters(Oil),
         'heat': by_kind(TankHeat), 'warm oil': parameters(MineralOil), 'wall': by_kind(Wall),
         'return line': by_kind(ReturnLine), 'dump': by_kind(NoneDump | LagDump | ValveDump),
-        'emergency stop': keys(GROUP), 'record': keys(RECORD),
+        'emergency stop': keys(GROUP), 'record': keys(RECORD), 'publish': keys(PUBLISH_KEYS),
         'storage': parameters(Storage), 'link': parameters(LinkSheet),
         'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
         'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS),

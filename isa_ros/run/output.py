@@ -5,9 +5,11 @@ from typing import NamedTuple, Protocol
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.bound import nothing, Part
+from isa_ros.core.topic import Topic
 from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.buffered import quiet
+from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
 from isa_ros.run.packing import Messages, Names, Packer
 from isa_ros.run.recorders import Recorder
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
@@ -59,18 +61,24 @@ class RunOutput(RowSink):
     Packs the rows of a run at each instant and passes the messages to recorder and outlets.
 
     Without recorder (None) and without subscriptions only what was applied is packed. Without
-    ``has_end`` the run was cut off, and its last instant has no diagnostics.
+    ``has_end`` the run was cut off, and its last instant has no diagnostics. ``period_of`` are the
+    periods of publishing.
     """
 
     def __init__(
             self, packer: Packer, step_ns: int, recorder: Recorder | None = None,
-            outlets: Outlets = Outlets(), *, has_end: bool = True) -> None:
+            outlets: Outlets = Outlets(), *, has_end: bool = True,
+            period_of: PeriodOf = every_tick) -> None:
         self._packer = packer
         self._step_ns = step_ns
         self._recorder = None if recorder is None else quiet(recorder)
         self._outlets = outlets
         self._has_end = has_end
         self._surroundings = packer.surroundings
+        self._live = LivePeriods(period_of, self._surroundings)
+        self._live_actuators = [LivePeriods(period_of, packer.topics_of(row))
+                                for row, _ in enumerate(outlets.actuators)]
+        self._live_clock = LivePeriods(period_of, [Topic(*clock.TOPIC)])
         self._events: list[bytes] = []
         self._unrecorded: int | None = None
         self._recorded = 0
@@ -78,7 +86,7 @@ class RunOutput(RowSink):
 
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
-        if self._outlets.clock.has_subscribers():
+        if self._outlets.clock.has_subscribers() and self._live_clock.due(tick, (0,)):
             self._outlets.clock.publish((clock.pack(self._stamp(tick)),))
 
     def quiet_ticks(self, tick: int) -> int:
@@ -136,10 +144,11 @@ class RunOutput(RowSink):
         self._unrecorded = tick
         for row in subscribed:
             outlet = outlets.actuators[row]
-            outlet.publish(packer.of_actuator(row, outlet.wanted))
+            due = self._live_actuators[row].due(tick, outlet.wanted)
+            outlet.publish(packer.of_actuator(row, due))
         if has_surroundings:
             outlets.surroundings.publish(
-                packer.of(self._surroundings, outlets.surroundings.wanted))
+                packer.of(self._surroundings, self._live.due(tick, outlets.surroundings.wanted)))
 
     def end(self) -> None:
         """

@@ -250,6 +250,10 @@ class Packer:
         """
         return self._messages(self._own[row], wanted)
 
+    def topics_of(self, row: int) -> list[Topic]:
+        """Return the topics of one actuator, in the order of its messages."""
+        return [self.topics[self._index[name]] for name in self._own[row]]
+
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
         return bool(self._kinds[row] or self._sent_kinds[row])

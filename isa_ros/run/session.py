@@ -113,10 +113,11 @@ def prepare(
         request.controllers).stored(request.compression, request.split_mb, 'record options')
     for body in run.bodies:
         body.refuse_absent(run.source)
-    if run.record.thins:
+    if run.record.thins or run.publish.decimate:
         rows = Rows(len(run.actuators), surroundings_in_form(run))
-        run.record.refuse_misfits(
-            [topic.name for topic in packer_of(run, rows.published).topics], run.source)
+        topics = packer_of(run, rows.published).topics
+        run.record.refuse_misfits([topic.name for topic in topics], run.source)
+        run.publish.refuse_misfits(topics, run.source)
     scenario = planned(request.scenario, run, changes)
     if not has_bus:
         scenario.refuse_bus()
@@ -211,8 +212,8 @@ def record(
                            run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
                 loop.sinks = (
-                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published), trip_log,
-                    *sinks)
+                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published,
+                              period_of=run.publish.period), trip_log, *sinks)
                 coordinator = Coordinator(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),

@@ -3,6 +3,7 @@
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.run.live import every_tick, PeriodOf
 from isa_ros.run.output import NoOutlet, Outlets, packer_of, RunOutput
 from isa_ros.run.packing import Messages, Packer
 from isa_ros.tick.exchange import Rows
@@ -35,7 +36,9 @@ class FakeOutlet:
 class Stage:
     """A run's output, with outlets of which some have a subscription."""
 
-    def __init__(self, *heard: str, is_recorded: bool = True) -> None:
+    def __init__(
+            self, *heard: str, is_recorded: bool = True,
+            period_of: PeriodOf = every_tick) -> None:
         self.log: list[str] = []
         self.group: ActuatorGroup = group_of(RUN)
         self.rows = Rows(2, surroundings_of(RUN))
@@ -50,7 +53,7 @@ class Stage:
             packer, RUN.step_ns, self.recorder if is_recorded else None, Outlets(
                 clock=self.outlets['clock'], events=self.outlets['events'],
                 surroundings=self.outlets['surroundings'],
-                actuators=[self.outlets['hip'], self.outlets['knee']]))
+                actuators=[self.outlets['hip'], self.outlets['knee']]), period_of=period_of)
 
     def take(self, tick: int, tuned=None) -> None:
         """Give the output the rows before a tick."""
@@ -213,3 +216,31 @@ def test_the_end_adds_the_diagnostics_of_the_last_instant():
     shown = [topic.name for topic in expected.surroundings].index('/diagnostics')
     assert before[shown] is None and at_end[shown] == data
     assert at_end.count(None) == len(at_end) - 1
+
+
+PERIODS = {'/clock': 3, '/coordinator/supply_pressure': 2, '/knee/valve': 4}
+
+
+def test_topics_with_a_period_are_published_at_their_ticks_alone_and_recorded_at_each():
+    stage = Stage(*EVERYONE, period_of=lambda topic: PERIODS.get(topic.name, 1))
+    names = {'hip': [name for name in stage.topics if name.startswith('/hip/')],
+             'knee': [topic.name for topic in stage.expected(0).topics_of(1)]}
+    for tick in range(1, 13):
+        stage.output.take_time(tick)
+        stage.take(tick)
+        stage.output.record()
+    assert len(stage.outlets['clock'].sent) == 4
+    valve = names['knee'].index('/knee/valve')
+    assert [tick for tick, sent in enumerate(stage.outlets['knee'].sent, 1)
+            if sent[valve] is not None] == [4, 8, 12]
+    other = names['knee'].index('/knee/references')
+    assert all(sent[other] is not None for sent in stage.outlets['knee'].sent)
+    assert len(stage.outlets['hip'].sent) == 12
+    surroundings = [topic.name for topic in stage.expected(0).surroundings]
+    supply = surroundings.index('/coordinator/supply_pressure')
+    assert [tick for tick, sent in enumerate(stage.outlets['surroundings'].sent, 1)
+            if sent[supply] is not None] == [2, 4, 6, 8, 10, 12]
+    for name in ('/knee/valve', '/clock', '/coordinator/supply_pressure'):
+        index = stage.topics.index(name)
+        assert [index in [k for k, _ in messages] for _, _, messages in stage.recorder.samples
+                ] == [True] * 12

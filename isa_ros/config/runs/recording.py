@@ -16,17 +16,15 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from isa_ros.bag.storage import PLAIN, Storage
+from isa_ros.config.runs.topic_patterns import (
+    fitting, patterns, period_of, Periods, periods)
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, ParameterSet, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
-from isa_ros.config.text.sections import Place, section_at, written
+from isa_ros.config.text.sections import Place, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.kept_ports import LOAD_PORT_TOPIC
-
-MAX_PERIOD = 10_000    # ticks between two samples of a topic
-MAX_PATTERNS = 100
-MAX_PATTERN_LENGTH = 256
 
 _EVENTS = '/coordinator/events'
 _INPUTS = ('sent_setpoint', LOAD_PORT_TOPIC)
@@ -39,7 +37,7 @@ class RecordConfig:
     storage: Storage = PLAIN
     leave_out: tuple[str, ...] = ()
     """Patterns of topics that are not recorded."""
-    decimate: tuple[tuple[str, int], ...] = ()
+    decimate: Periods = ()
     """(pattern of topics, n): recorded at every n-th tick; the first matching pattern counts."""
 
     @property
@@ -57,7 +55,7 @@ class RecordConfig:
             return 1
         if any(fnmatchcase(topic, pattern) for pattern in self.leave_out):
             return 0
-        return next((n for pattern, n in self.decimate if fnmatchcase(topic, pattern)), 1)
+        return period_of(topic, self.decimate)
 
     def refuse_misfits(self, topics: Iterable[str], source: str) -> None:
         """
@@ -71,16 +69,16 @@ class RecordConfig:
         """
         topics, place = sorted(topics), Place(source, 'record')
         for pattern in self.leave_out:
-            for topic in _fitting(pattern, topics, place / 'leave_out'):
+            for topic in fitting(pattern, topics, place / 'leave_out'):
                 if replay_needs(topic):
                     raise ConfigError(
                         f'{place / "leave_out"} = {pattern!r} leaves out {topic}, which a '
                         'replay needs')
         for pattern, _ in self.decimate:
-            fitting = _fitting(pattern, topics, place / 'decimate')
-            if all(replay_needs(topic) for topic in fitting):
+            found = fitting(pattern, topics, place / 'decimate')
+            if all(replay_needs(topic) for topic in found):
                 raise ConfigError(
-                    f'{place / "decimate"} = {pattern!r} decimates {fitting[0]}, of which a '
+                    f'{place / "decimate"} = {pattern!r} decimates {found[0]}, of which a '
                     'replay needs every message')
 
     def stored(
@@ -116,51 +114,10 @@ class _RecordKind(KeyTable):
         return RecordConfig(**super().read(tree, place))
 
 
-def _patterns(value: Any, place: Place) -> tuple[str, ...]:
-    if not isinstance(value, list):
-        raise ConfigError(f'{place} = {value!r}, must be a list of topics')
-    return tuple(_pattern(pattern, place) for pattern in _few(value, place))
-
-
-def _periods(value: Any, place: Place) -> tuple[tuple[str, int], ...]:
-    return tuple((_pattern(pattern, place), _period(n, place / pattern))
-                 for pattern, n in _few(section_at(value, place), place).items())
-
-
 RECORD = _RecordKind((
-    Key('leave_out', Value('list of topics', _patterns),
+    Key('leave_out', Value('list of topics', patterns),
         'topics that are not recorded; * stands for any text', []),
-    Key('decimate', Value('whole numbers by topic', _periods),
+    Key('decimate', Value('whole numbers by topic', periods),
         'topics of which only every n-th tick is recorded', {},
         of=lambda record: dict(record.decimate))),
     rest=Key('storage', ParameterSet(Storage), 'the files of the bag'))
-
-
-def _few(found: Any, place: Place) -> Any:
-    if len(found) > MAX_PATTERNS:
-        raise ConfigError(f'{place} has {len(found)} patterns, must be <= {MAX_PATTERNS}')
-    return found
-
-
-def _pattern(value: Any, place: Place) -> str:
-    if isinstance(value, str) and value.startswith(('/', '*')) and (
-            len(value) <= MAX_PATTERN_LENGTH):
-        return value
-    raise ConfigError(
-        f'{place} = {value!r}, must be a topic like /hip/valve or a pattern like /*/valve of '
-        f'<= {MAX_PATTERN_LENGTH} characters')
-
-
-def _period(value: Any, place: Place) -> int:
-    if type(value) is int and 2 <= value <= MAX_PERIOD:
-        return value
-    raise ConfigError(
-        f'{place} = {value!r}, must be a whole number of ticks >= 2 and <= {MAX_PERIOD}')
-
-
-def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
-    fitting = [topic for topic in topics if fnmatchcase(topic, pattern)]
-    if not fitting:
-        raise ConfigError(
-            f'{place} = {pattern!r} matches no topic; valid: {", ".join(topics)}')
-    return fitting

@@ -44,7 +44,7 @@ _HANDED_DOWN = ('step_ms', 'controller_offset_ms', LINK)
 """Keys of the run file that each robot is checked with."""
 _OF_RUN = {'step_ns': 'step_ms', 'controller_offset_ns': 'controller_offset_ms',
            **{key: key for key in ('tick_timeout_s', 'seed', 'accept', 'start_time_s', 'record',
-                                   CONTROLLERS)}}
+                                   'publish', CONTROLLERS)}}
 """Keys of a resolved text for the whole run, with those of a run file."""
 
 

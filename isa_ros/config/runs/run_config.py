@@ -17,6 +17,7 @@ from isa_ros.config.runs.emergency_stops import (
     ALL as EVERY, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.one_robot import one_robot
+from isa_ros.config.runs.publishing import PUBLISH, PublishConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import Sampled, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import OFFSET, OFFSET_NS, START_TIME, STEP, STEP_NS
@@ -58,6 +59,7 @@ class RunConfig:
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
+    publish: PublishConfig = PublishConfig()
     accept: str = ACCEPT_ALL
     """Who commands: also topics, services and parameters, or the scenario of the run only."""
     seed: int = 0
@@ -129,7 +131,8 @@ class RunConfig:
     @property
     def digest(self) -> str:
         """Return the sha256 of the resolved text, without what changes no signal."""
-        text = replace(self, record=RecordConfig(), start_time_s=0, accept=ACCEPT_ALL).to_yaml()
+        text = replace(self, record=RecordConfig(), publish=PublishConfig(), start_time_s=0,
+                       accept=ACCEPT_ALL).to_yaml()
         return hashlib.sha256(text.encode()).hexdigest()
 
     def actuator(self, name: str) -> ActuatorConfig:
@@ -241,7 +244,7 @@ RUN = KeyTable((
         'required, or `supplies`', InText.NEVER),
     Key('supplies', Named(SUPPLY_KEYS, are_placed=True), 'several supplies, instead of `supply`',
         None, in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
-    Key('record', RECORD, 'what is recorded', {}, 'everything'),
+    Key('record', RECORD, 'what is recorded', {}, 'everything'), PUBLISH,
     Key(LINK, Layer(LinkSheet), 'the link of all actuators', {}, in_text=InText.NEVER),
     Key('actuators', Named(ACTUATOR, are_placed=True),
         'the actuators by name; records have their order'),

@@ -12,6 +12,7 @@ from isa_ros.config.runs.controller_config import CONTROLLERS
 from isa_ros.config.runs.emergency_stops import (
     emergency_stops_of, KEY as EMERGENCY_STOPS, refuse_without_dump)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
+from isa_ros.config.runs.publishing import PublishConfig
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.supplies import refuse_unused_temperature, supplies_of
 from isa_ros.config.runs.tick_grid import times_of
@@ -63,7 +64,8 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
         'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
         EMERGENCY_STOPS: stops,
         'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
-        'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
+        'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL,
+        'publish': values['publish'] or PublishConfig()}
     controllers = values.pop(CONTROLLERS)
     run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
                        if name in values})

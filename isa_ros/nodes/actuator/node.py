@@ -23,6 +23,7 @@ from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
+from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
@@ -47,6 +48,8 @@ class NodeSetup(NamedTuple):
     """One of a group of actuators; None: the node makes its own."""
     accept: str = ACCEPT_ALL
     """Of its run."""
+    period_of: PeriodOf = every_tick
+    """The periods of publishing of its run."""
 
 
 class ActuatorNode(Node):
@@ -69,7 +72,7 @@ class ActuatorNode(Node):
         with refusals():
             super().__init__(name, start_parameter_services=False, **kwargs)
         self.setup = resolve(self)
-        config, timing, actuator, accept = self.setup
+        config, timing, actuator, accept, period_of = self.setup
         self.actuator = actuator or SmartActuator(config, timing)
         """The actuator itself."""
         self._tunables = TunableParameters(
@@ -90,6 +93,7 @@ class ActuatorNode(Node):
         self.outlet = PreparedPublishers(
             self, topics_of_actuator('~', heats_up, self.actuator.has_link, has_cushion))
         """The publishers of the actuator's topics."""
+        self._live = LivePeriods(period_of, self._packer.topics_of(0))
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         services = [
@@ -146,9 +150,10 @@ class ActuatorNode(Node):
     def publish_last(self) -> None:
         """Publish the messages of the last tick that somebody reads, or that are kept."""
         t_ns, tuned = self.actuator.t_ns, self.actuator.applied_parameters
-        self._packer.pack(
-            t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
-        self.outlet.publish(self._packer.of_actuator(0, self.outlet.wanted))
+        step_ns = self.setup.timing.step_ns
+        self._packer.pack(t_ns, max(0, t_ns - step_ns), {0: tuned} if tuned else {})
+        due = self._live.due(t_ns // step_ns, self.outlet.wanted)
+        self.outlet.publish(self._packer.of_actuator(0, due))
 
     def publish_commands(self, commands: Sequence[tuple[int, np.void]]) -> None:
         """

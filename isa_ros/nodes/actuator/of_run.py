@@ -53,4 +53,5 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeS
         config = replace(config, load=default_load(model_of, config.sheet))
     # Alone it has no scenario that could command it.
     return NodeSetup(
-        config, timing_of(run), accept=run.accept if in_lockstep else ACCEPT_ALL)
+        config, timing_of(run), accept=run.accept if in_lockstep else ACCEPT_ALL,
+        period_of=run.publish.period)

@@ -7,6 +7,7 @@ import re
 from isa_ros.bag.storage import Storage
 from isa_ros.config.differences import key_differences, modern
 from isa_ros.config.runs.emergency_stops import EmergencyStopConfig
+from isa_ros.config.runs.publishing import PublishConfig
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.run_file import load_run
@@ -24,11 +25,13 @@ LEG = load_run(CONFIG / 'leg.yaml')
 TWO = replace(hip_and_knee([
     SupplyConfig('main', replace(ACCUMULATOR, return_line=RETURN_LINE), ('knee',)),
     SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000, accept='scenario',
-    emergency_stops=(EmergencyStopConfig('both', ('hip', 'knee')),))
+    emergency_stops=(EmergencyStopConfig('both', ('hip', 'knee')),),
+    publish=PublishConfig((('/clock', 7),)))
 FULL = replace(
     LEG, emergency_stops=(EmergencyStopConfig('legs', ('haa', 'kfe'), ('block',)),),
     controllers=('sway', 'gait'), accept='scenario', start_time_s=1, record=RecordConfig(
-        Storage(compression='zstd', split_mb=12.5), ('/*/references',), (('/*/valve', 10),)))
+        Storage(compression='zstd', split_mb=12.5), ('/*/references',), (('/*/valve', 10),)),
+    publish=PublishConfig((('/*/valve', 3),)))
 
 
 @pytest.mark.parametrize('run', [LEG, TWO, FULL], ids=['leg', 'two supplies', 'all keys'])
