@@ -66,13 +66,16 @@ def chosen(choice: Choice) -> Chosen:
     """
     if choice.name in model_names():
         tree, place, name = _of_model(choice), Place(choice.name), choice.name
+        keeps_load = choice.keeps_load
     else:
         tree, place = _of_file(choice)
-        name = _actuator(run_with_robots(tree, place)[0], choice)
+        before = run_with_robots(tree, place)[0]
+        name = _actuator(before, choice)
+        keeps_load = choice.keeps_load and before.body_of(name) is None
     values, load_values = {}, {}
     for key, value in choice.values.items():
         head, _, rest = key.partition('.')
-        if head == LOAD and rest and not choice.keeps_load:
+        if head == LOAD and rest and not keeps_load:
             load_values[rest] = value
         else:
             values[full_key(key, name)] = value

@@ -100,7 +100,8 @@ def _setting(
     config, unit = bench.config, measured.loop.unit
     return ({'label': label} if label else {}) | {
         'actuator': config.name, 'model': config.model, 'preset': config.preset,
-        'set': dict(bench.values), 'load': bench.load,
+        'set': dict(bench.values), 'load': bench.load, 'load_inertia': bench.inertia,
+        'load_in_words': bench.load_in_words,
         'loop': bench.loop.name, 'unit': unit.symbol,
         'initial_position': config.initial_position,
         'amplitude': measured.amplitude / unit.scale}

@@ -7,6 +7,7 @@ from typing import Any
 
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
+from isa_ros.analysis.response.body_load import body_load
 from isa_ros.analysis.response.choice import Choice, Chosen, chosen
 from isa_ros.analysis.response.loops import (
     Loop, loop_name, loop_of, units_of, UserUnit)
@@ -16,6 +17,7 @@ from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.text.changes import changed
 from isa_ros.config.text.parameter_sets import kind_of
 from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
@@ -25,7 +27,7 @@ import numpy as np
 __all__ = ['BLOCKED', 'Choice', 'REST_S', 'Rig', 'rig', 'rig_of']
 
 REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
-BLOCKED = 'blocked'
+BLOCKED, MASS = 'blocked', 'mass'
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,26 @@ class Rig:
     """Of this actuator alone, as nodes would run it."""
     loop: Loop
     load: str
+    """Its kind."""
     values: Mapping[str, Any] = field(default_factory=dict)
     """Values chosen by key; they are in ``run``, and named in its title."""
+    load_source: str = ''
+    """Of an actuator that a body loads: where its load comes from."""
+
+    @property
+    def inertia(self) -> float | None:
+        """Return the inertia of the load, kg | kg m2; None: recorded on a body."""
+        load = self.config.load
+        return None if load is None else float(load.inertia)
+
+    @property
+    def load_in_words(self) -> str:
+        """Return the kind of the load; of one that moves in a position loop with its inertia."""
+        if self.inertia is None or self.load == BLOCKED or self.loop.name != 'position':
+            return self.load
+        unit = 'kg m2' if self.config.sheet.is_rotary else 'kg'
+        source = f', {self.load_source},' if self.load_source else ''
+        return f'{self.load} of {self.inertia:.4g} {unit}{source}'
 
     @property
     def config(self) -> ActuatorConfig:
@@ -55,7 +75,7 @@ class Rig:
         config = self.config
         model = '' if config.name == config.model else f'{config.model}, '
         values = ''.join(f', {key} = {value}' for key, value in self.values.items())
-        return (f'{config.name} ({model}preset {config.preset}{values}), {self.load} at '
+        return (f'{config.name} ({model}preset {config.preset}{values}), {self.load_in_words} at '
                 f'{config.initial_position / place.scale:.4g} {place.symbol}')
 
     @property
@@ -126,7 +146,8 @@ def rig(choice: Choice) -> Rig:
     Return the rig a user names.
 
     A force, pressure, spool or current loop is measured against a blocked output, a position
-    loop on the load the actuator has, unless another kind is named.
+    loop on the load the actuator has, unless another kind is named. Of an actuator that moves a
+    body that is its effective mass at the start pose, under the force that is held there.
 
     Raises
     ------
@@ -143,16 +164,34 @@ def rig_of(named: Chosen, choice: Choice) -> Rig:
     units = units_of(config.sheet)
     config = replace(config, initial_position=_place(choice.position, config, units['position']))
     loop = loop_of(config.sheet, loop_name(config, choice.loop))
-    model = actuator_model(config.model, 'model')
+    model, source = actuator_model(config.model, 'model'), ''
     if choice.keeps_load and config.load is not None:
         kind = kind_of(config.load, LocalLoad)
     else:
         kind = choice.load or (model.default_load if choice.loop == 'position' else BLOCKED)
         place = Place('--load')
-        tree = changed({'kind': kind}, named.load_values, place.file)
+        tree: Tree = {'kind': kind}
+        if choice.keeps_load:
+            tree, source = _of_body(named, tree)
+        tree = changed(tree, named.load_values, place.file)
         config = replace(config, load=own_load(tree, place, model, config.sheet))
         kind = str(tree['kind'])
-    return Rig(named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values)
+    return Rig(
+        named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values, source)
+
+
+def _of_body(named: Chosen, default: Tree) -> tuple[Tree, str]:
+    """Return the load of an actuator that moves a body, and where it comes from."""
+    body = named.run.body_of(named.actuator)
+    where = 'its body' if body is None else body.name
+    if 'inertia' in named.load_values:
+        return default, f'given, not that of {where}'
+    found = body_load(named.run, named.actuator)
+    if found is None or MASS not in actuator_model(
+            named.run.actuator(named.actuator).model, 'model').loads:
+        return default, f"the model's default, not that of {where} (--set load.inertia=)"
+    return ({'kind': MASS, 'inertia': found.inertia, 'force': found.force},
+            f'the effective mass of {found.body} at its start pose')
 
 
 def _place(given: float | None, config: ActuatorConfig, unit: UserUnit) -> float:

@@ -67,7 +67,7 @@ def table(bench: Rig, wanted: Wanted, found: Tuned) -> str:
     units = units_of(bench.config.sheet)
     place, force = units['position'], bench.loop.unit
     amplitude = found.reached[0].measured.amplitude / force.scale
-    head = [f'{bench.config.name} (preset {bench.config.preset}), {bench.load}: '
+    head = [f'{bench.config.name} (preset {bench.config.preset}), {bench.load_in_words}: '
             f'{bench.loop.label}, sine of {amplitude:.4g} {force.symbol}']
     rows: list[Cells] = [
         (f'position, {place.symbol}', 'phase margin, deg', '-3 dB, Hz', 'gain margin, dB',
@@ -131,6 +131,7 @@ def _numbers(bench: Rig, wanted: Wanted, found: Tuned) -> Mapping[str, Any]:
     units = units_of(bench.config.sheet)
     return {
         'actuator': bench.config.name, 'model': bench.config.model, 'load': bench.load,
+        'load_inertia': bench.inertia, 'load_in_words': bench.load_in_words,
         'loop': bench.loop.name, 'is_reached': found.is_reached,
         'wanted': {'phase_margin_deg': wanted.phase_margin, 'bandwidth_hz': wanted.bandwidth},
         'force': _written(found),
