@@ -16,6 +16,7 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.run.option import namespace
 from isa_ros.run.options import Request, request_of_arguments
+from isa_ros.text.progress import underway
 
 RUNS = Path('runs')  # default directory of demos
 
@@ -118,9 +119,11 @@ def report(options: Namespace) -> bool:
     from isa_ros.analysis.report.report import another_version, recorded as read_recorded
     from isa_ros.analysis.report.report import write_report
     bag: Path = options.bag
-    found = read_recorded(bag)
     page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
-    for path in write_report(found, page):
+    with underway(sys.stderr, one_line(f'reading {bag}, drawing its report')):
+        found = read_recorded(bag)
+        written = [*write_report(found, page)]
+    for path in written:
         print(one_line(str(path)))
     if found.signals.problem:
         print_line(another_version(found.signals))

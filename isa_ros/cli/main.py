@@ -39,6 +39,14 @@ class _Parser(argparse.ArgumentParser):
             message = f'argument {chosen["of"]}: invalid choice: {chosen["given"]!r}; {near}'
         self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
 
+    def parse_known_args(   # type: ignore[no-untyped-def]
+            self, args=None, namespace=None):
+        """Refuse what a command does not know by its own name: `isa` knows less of it."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown and ' ' in self.prog:
+            self.error(f'unrecognized arguments: {" ".join(unknown)}')
+        return found, unknown
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""

@@ -24,6 +24,8 @@ import numpy as np
 
 TRIP, WARNING, STATE = 'trip', 'warning', 'state'
 CHANGE, REFUSED, CAVITY, OVERPRESSURE = 'change', 'refused', 'cavity', 'overpressure'
+PAGE = 'by the page, '
+"""Begins the lines about setpoints of a page, ACTUATOR: TEXT."""
 SMALL = 1e-9
 """Cavities below it, m3, are not told of: 1 mm3."""
 PROOF = 1.5
@@ -91,11 +93,15 @@ def events_in(run: RunConfig, history: History) -> list[Event]:
 
 
 def _of_requests(history: History, step_ns: int) -> Iterator[Event]:
-    """Yield the requests of controllers that were refused or limited."""
+    """Yield requests of controllers that were refused or limited, and setpoints of a page."""
     for tick, texts in history.events.items():
         for name, text, is_refused in filter(None, map(request_told, texts)):
             yield Event(tick * step_ns / NS_PER_SECOND, name,
                         REFUSED if is_refused else WARNING, f'{REQUEST}{text}')
+        for line in texts:
+            if line.startswith(PAGE):
+                name, _, text = line.removeprefix(PAGE).partition(': ')
+                yield Event(tick * step_ns / NS_PER_SECOND, name, CHANGE, f'{PAGE}{text}')
 
 
 def _of_device(name: str, samples: Records) -> Iterator[Event]:

@@ -34,13 +34,23 @@ def supply_values(
     """
     if isinstance(supply, CircuitSupply) and fault.part:
         chosen = _chosen(fault, supply, tree, place)
-        return {f'parts.{chosen}.{key}': value for key, value in fault.part_values.items()}
+        return values_of_part(fault, chosen)
     part_prefix(supply, tree, place)
     if not fault.values:
         raise ConfigError(
             f'{place}.fault = {fault.name!r} is one of a part of kind {fault.part}, must be one '
             f'of a supply of kind {kind_of(supply, SupplySheet)}')
     return dict(fault.values)
+
+
+def values_of_part(fault: NamedFault, part: str) -> dict[str, float]:
+    """Return the values of a fault of a part by the keys of its circuit."""
+    return {f'parts.{part}.{key}': value for key, value in fault.part_values.items()}
+
+
+def parts_with(fault: NamedFault, supply: CircuitSupply) -> list[str]:
+    """Return the names of the parts of a circuit that may have a fault."""
+    return [name for name, part in supply.by_name.items() if kind_of(part, Part) == fault.part]
 
 
 def part_prefix(supply: SupplySheet | None, tree: Tree, place: Place) -> str:
@@ -58,7 +68,7 @@ def part_prefix(supply: SupplySheet | None, tree: Tree, place: Place) -> str:
 
 def _chosen(fault: NamedFault, supply: CircuitSupply, tree: Tree, place: Place) -> str:
     """Return the name of the part that has a fault: the given one, or the only one."""
-    fitting = [name for name, part in supply.by_name.items() if kind_of(part, Part) == fault.part]
+    fitting = parts_with(fault, supply)
     if not fitting:
         raise ConfigError(
             f'{place}.fault = {fault.name!r} is one of a part of kind {fault.part}, of which the '

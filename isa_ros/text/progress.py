@@ -1,6 +1,6 @@
 """Progress of long work: one line of a terminal, overwritten until the work ends."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 import contextlib
 import time
 from typing import Protocol, TextIO
@@ -35,6 +35,19 @@ class TerminalLine:
 def terminal_line(stream: TextIO) -> TerminalLine | None:
     """Return the line to show progress on; None if ``stream`` is not a terminal."""
     return TerminalLine(stream) if stream.isatty() else None
+
+
+@contextlib.contextmanager
+def underway(stream: TextIO, text: str) -> Iterator[None]:
+    """Show what is done, for as long as it takes; nothing where ``stream`` is not a terminal."""
+    line = terminal_line(stream)
+    if line is not None:
+        line.show(text)
+    try:
+        yield
+    finally:
+        if line is not None:
+            line.erase()
 
 
 class Progress(Protocol):

@@ -5,19 +5,31 @@ A fault lies over the values of its parameters; when it is switched off, what li
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import changed_together, changing, named
-from isa_ros.config.models.fault_catalogue import ACTUATOR, common_faults, SUPPLY
+from isa_ros.config.models.fault_catalogue import (
+    ACTUATOR, fault_catalogue, NamedFault, SUPPLY)
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.changeable import changeables, with_changes
 from isa_ros.core.changing_values import OFF, OVER
-from isa_ros.core.parameter import Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.part_faults import parts_with, values_of_part
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
+from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.surroundings.surroundings import Surroundings
 
 Values = Mapping[str, float]
+
+
+class Switch(NamedTuple):
+    """A fault that a page switches."""
+
+    meaning: str
+    values: Values
+    """As messages have them, of a supply by SUPPLY.KEY."""
 
 
 class FaultChoices:
@@ -36,8 +48,7 @@ class FaultChoices:
 
     def tree(self, of: str) -> list[Mapping[str, str]]:
         """Return the faults of an actuator or a supply, for JSON."""
-        catalogue = common_faults()
-        return [{'name': name, 'meaning': catalogue[name].meaning} for name in self._known[of]]
+        return [{'name': name, 'meaning': own.meaning} for name, own in self._known[of].items()]
 
     def restart(self) -> None:
         """Forget what is on: at t = 0 nothing lies over a value."""
@@ -59,7 +70,7 @@ class FaultChoices:
         if name not in self._known[of]:
             raise ConfigError(f'{of}: fault {name!r} is unknown; '
                               f'{alternatives(name, self._known[of])}')
-        values, tune = self._known[of][name], self._tune[of]
+        values, tune = self._known[of][name].values, self._tune[of]
         if is_on:
             tune({f'{OVER}{key}': value for key, value in values.items()})
         elif (of, name) in self.on:
@@ -70,31 +81,46 @@ class FaultChoices:
 
     def _beneath(self, of: str, name: str) -> Values:
         """Return the values of a fault's parameters that others, still on, lay over them."""
-        own = self._known[of][name]
+        own = self._known[of][name].values
         return {key: value for other, fault in self.on if (other, fault) != (of, name)
-                if other == of for key, value in self._known[of][fault].items() if key in own}
+                if other == of for key, value in self._known[of][fault].values.items()
+                if key in own}
 
 
-def _of_actuator(actuator: ActuatorConfig) -> Iterable[tuple[str, Values]]:
+def _of_actuator(actuator: ActuatorConfig) -> Iterable[tuple[str, Switch]]:
     """Yield the faults that an actuator can have, their values as messages have them."""
     known = changing(actuator.sheet, actuator.load)
-    for name, fault in common_faults().items():
+    keys = {own.key for own in known.values()}
+    for name, fault in fault_catalogue().items():
+        if fault.of != ACTUATOR or (fault.rig and not fault.values.keys() <= keys):
+            continue    # it lacks the part, such as a cushion
         try:
-            if fault.of == ACTUATOR:
-                values = named(known, fault.values)
-                changed_together(actuator.sheet, actuator.load, values, known)
-                yield name, values
+            values = named(known, fault.values)
+            changed_together(actuator.sheet, actuator.load, values, known)
         except ConfigError:
             continue    # it lacks the part, such as a link
+        yield name, Switch(fault.meaning, values)
 
 
-def _of_supply(name: str, sheet: Parameters) -> Iterable[tuple[str, Values]]:
-    """Yield the faults that a supply can have; those of parts of a circuit are of scenarios."""
+def _of_supply(name: str, sheet: SupplySheet) -> Iterable[tuple[str, Switch]]:
+    """Yield the faults that a supply can have, of a circuit those of each part."""
     known = changeables(sheet)
-    for fault in common_faults().values():
-        try:
-            if fault.of == SUPPLY and fault.values:
-                with_changes(sheet, known, fault.values)
-                yield fault.name, {f'{name}.{key}': value for key, value in fault.values.items()}
-        except ConfigError:
-            continue    # it lacks the part, or has another range
+    for fault in fault_catalogue().values():
+        if fault.of != SUPPLY:
+            continue
+        for part, values in _values_in(sheet, fault):
+            try:
+                with_changes(sheet, known, values)
+            except ConfigError:
+                continue    # it lacks the part, or has another range
+            yield (f'{part}: {fault.name}' if part else fault.name), Switch(
+                fault.meaning, {f'{name}.{key}': value for key, value in values.items()})
+
+
+def _values_in(sheet: SupplySheet, fault: NamedFault) -> Iterable[tuple[str, Values]]:
+    """Yield the values of a fault with the part of a circuit that has it, '' otherwise."""
+    if isinstance(sheet, CircuitSupply) and fault.part:
+        for part in parts_with(fault, sheet):
+            yield part, values_of_part(fault, part)
+    elif fault.values:
+        yield '', fault.values

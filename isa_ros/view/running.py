@@ -27,10 +27,11 @@ from isa_ros.tick.exchange import Rows, RowSink
 from isa_ros.tick.in_process import InProcess
 from isa_ros.view.columns import Columns
 from isa_ros.view.controls import Controls
+from isa_ros.view.drags import Drags
 from isa_ros.view.frames import frame_of, Gathering, PERIOD_S
 from isa_ros.view.hub import Hub
 from isa_ros.view.orders import (
-    Order, OrderAnswer, PAUSE, RESTART, SEEK, SLOWEST, SPEED, STEP, STOP, ticks_text)
+    Order, OrderAnswer, PAUSE, RESTART, SEEK, SETPOINT, SLOWEST, SPEED, STEP, STOP, ticks_text)
 from isa_ros.view.pages import Page
 from isa_ros.view.panels import groups_of
 from isa_ros.view.scene import scene_of
@@ -58,6 +59,7 @@ class LiveRun(RowSink):
         self._columns: Columns | None = None
         self._answers: list[OrderAnswer] = []
         self._now, self._next = now, 0.0
+        self._drags, self._host = Drags(), 0.0
         self.hub = Hub(page.tree(
             run, 'run', None if n_ticks is None else n_ticks * run.step_ns / NS_PER_SECOND,
             note='', controls=self._controls.tree()))
@@ -79,9 +81,12 @@ class LiveRun(RowSink):
 
     def serve(self, coordinator: Coordinator) -> None:
         """Carry out the orders since the last call; send a frame when it is due."""
+        self._host = self._now()
         for order in self.hub.taken():
             self._answers.append(self._answer(order, coordinator))
-        if self._now() >= self._next:
+        for event in self._drags.ended(self._host):
+            coordinator.add_event(event)
+        if self._host >= self._next:
             self._next = self._now() + PERIOD_S
             self.send(coordinator)
 
@@ -125,13 +130,17 @@ class LiveRun(RowSink):
         if order.what == RESTART:
             coordinator.reset()
             self._controls.restart()
+            self._drags.clear()
             return 'starts again at t = 0, with another bag'
         if order.what == STOP:
             coordinator.emergency_stop(order.value)
             return f'emergency stop {"opened" if order.value else "released"}'
         if order.what == SEEK:
             raise SetpointError('seek: a run goes forward only')
-        return self._controls.carry_out(order)
+        text = self._controls.carry_out(order)
+        if order.what == SETPOINT:
+            self._drags.move(order.of, order.name, text, self._host)
+        return text
 
 
 def _devices(rows: Rows) -> list[str]:

@@ -75,6 +75,8 @@ def test_debug_shows_the_traceback_and_keeps_the_exit_code(
     (['validate', '--out', f'{__file__}/docs'],
      f'isa validate: argument --out: {__file__}/docs: {__file__} is a file, must be a directory'),
     (['params', 'isa_v5', '--presets', 'x'], 'unrecognized arguments: --presets'),
+    (['bode', 'isa_v5', '--open'],
+     'isa bode: unrecognized arguments: --open; see isa bode --help'),
 ])
 def test_wrong_usage_is_one_line_and_2(
         arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:

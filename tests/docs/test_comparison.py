@@ -5,7 +5,8 @@ import re
 from tests.docs.pages import text_of
 
 PAGE = text_of('comparison')
-TOOLS = ['Hopsan', 'Simscape', 'mujoco_ros2_control', "ros2_control's mock system",
+TOOLS = ['Hopsan', 'Simscape', 'Modelica', 'Own code', 'Gazebo', 'Drake',
+         'mujoco_ros2_control', "ros2_control's mock system",
          "ros2_canopen's fake slaves", 'HELICS', "PX4's lockstep", 'am-sdk',
          "KickCAT's simulator"]
 _USED = re.compile(r'\]\[(\w+)\]')

@@ -3,7 +3,7 @@
 import errno
 import io
 
-from isa_ros.text.progress import counted, terminal_line
+from isa_ros.text.progress import counted, terminal_line, underway
 import pytest
 from tests.text.terminal import Terminal
 
@@ -58,3 +58,11 @@ def test_a_terminal_that_was_closed_ends_no_work():
     assert line is not None
     line.show('half')
     line.end('done')
+
+
+def test_what_is_under_way_is_shown_until_it_ends_or_fails():
+    stream, other = Terminal(), io.StringIO()
+    with pytest.raises(ZeroDivisionError), underway(stream, 'reading'), underway(other, 'reading'):
+        assert stream.getvalue().endswith('\rreading\033[K')
+        raise ZeroDivisionError
+    assert stream.getvalue() == '\rreading\033[K\r\033[K' and other.getvalue() == ''

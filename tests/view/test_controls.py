@@ -38,7 +38,7 @@ class Rig:
 
 @pytest.mark.parametrize('config', [
     'leg', 'crane_counterbalance', 'hyq_leg', 'rig_servo_valve', 'rig_valve', 'winch',
-    'two_joint_leg', 'rig_rotary_position'])
+    'two_joint_leg', 'rig_rotary_position', 'pump_station', 'rig_hoses'])
 def test_both_ends_of_every_slider_are_accepted(config):
     """As is its start, which lies between them; every fault goes on and off."""
     rig = Rig(config)
@@ -164,3 +164,23 @@ def test_a_supply_has_the_faults_of_its_kind():
     assert ports['supply_pressure'][0] == 10e6
     with pytest.raises(ConfigError, match="'pump_trip' is unknown"):
         constant.order('fault', 'supply', 'pump_trip', True)
+
+
+def test_a_part_of_a_circuit_has_its_own_faults():
+    """Each by its name; its values are those of the part."""
+    rig = Rig('pump_station')
+    faults = {own['name']: own['meaning'] for own in rig.tree['supplies'][0]['faults']}
+    supply = rig.tree['supplies'][0]['name']
+    assert {'buffer: accumulator_empty', 'press_hose: supply_hose_burst'} <= set(faults)
+    rig.order('fault', supply, 'buffer: accumulator_empty', True)
+    assert rig.controls.state()['faults'] == [(supply, 'buffer: accumulator_empty')]
+    rig.tick()
+    changed = rig.surroundings.tuned
+    assert [key for key in changed if 'parts.buffer.' in key]
+    assert not [key for key in changed if 'parts.tool_buffer.' in key]
+
+
+def test_an_actuator_has_the_faults_of_the_parts_that_it_has():
+    for config, is_there in (('rig_hoses', True), ('rig_linear', False)):
+        names = {own['name'] for own in Rig(config).tree['actuators'][0]['faults']}
+        assert ('hose_a_burst' in names) is is_there and 'cushion_a_blocked' not in names

@@ -104,6 +104,27 @@ def test_frames_have_the_samples_of_every_tick(tmp_path):
     assert lived.frames[-1]['devices'] == ['enabled']
 
 
+def test_a_drag_is_one_event_of_the_run(tmp_path):
+    """Of each slider with its last value, once it has stood still for half a second."""
+    drag = {10 + k: [setpoint('position', 0.030 + 0.001 * k)] for k in range(4)}
+    lived = Lived(tmp_path / 'bag', drag | {
+        12: [*drag[12], setpoint('effort', 71.0)], 100: [setpoint('position', 0.044)]},
+        duration=0.2)
+    events = [own for own in isa_ros.read(lived.bag.path).events if own.kind == 'change']
+    assert [(own.source, own.what) for own in events] == [
+        ('ram', 'by the page, effort = 71'), ('ram', 'by the page, position = 0.033'),
+        ('ram', 'by the page, position = 0.044')]
+    assert 0.013 < events[0].t_s <= events[1].t_s < 0.1 < events[2].t_s
+    assert replay(lived.bag).is_equal
+
+
+def test_a_drag_before_a_restart_is_no_event_of_the_next_run(tmp_path):
+    lived = Lived(tmp_path / 'bag', {
+        10: [setpoint('position', 0.031)], 12: [{'what': 'restart'}]}, duration=0.2)
+    for bag in lived.bags:
+        assert not [own for own in isa_ros.read(bag).events if own.kind == 'change']
+
+
 def test_a_setpoint_takes_effect_at_the_next_tick_and_is_in_the_bag(tmp_path):
     """With the number of the tick that the page is told; the bag replays."""
     lived = Lived(tmp_path / 'bag', {

@@ -129,7 +129,8 @@ def _what_ran(ran: WhatRan, signals: Signals) -> str:
         tag('p', 'All gains and values are those of the shipped models and presets.'))
     files = ', '.join(download(name, text) for name, text in ran.files.items())
     return ''.join([
-        tag('h2', 'What was run'), pairs(ran.rows), f'<p>To repeat it, with {files}:</p>',
+        tag('h2', 'What was run'), pairs(ran.rows),
+        f'<p>To repeat it, in the folder of the bag, with {files} beside it:</p>',
         tag('pre', '\n'.join(ran.commands)),
         details('Values that differ from the shipped ones', values, is_open=len(ran.values) < 12),
         *(details(name, tag('pre', text)) for name, text in ran.files.items()
