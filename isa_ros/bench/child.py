@@ -13,12 +13,18 @@ Ended = subprocess.CompletedProcess[str]
 
 ROOT = Path(isa_ros.__file__).parents[1]
 """The checkout, or the packages of an installation."""
+_NO_BYTECODE = 'PYTHONDONTWRITEBYTECODE'
 
 
 def environment(added: Mapping[str, str] | None = None, root: Path = ROOT) -> dict[str, str]:
-    """Return this process's environment, with the packages of ``root`` first in Python's path."""
+    """
+    Return this process's environment, with the packages of ``root`` first in Python's path.
+
+    Python keeps their bytecode, as an installation has it: compiling it takes 0.14 s of a start.
+    """
     path = [str(root), *filter(None, [os.environ.get('PYTHONPATH')])]
-    return {**os.environ, 'PYTHONPATH': os.pathsep.join(path), **(added or {})}
+    own = {name: value for name, value in os.environ.items() if name != _NO_BYTECODE}
+    return {**own, 'PYTHONPATH': os.pathsep.join(path), **(added or {})}
 
 
 def run_module(
