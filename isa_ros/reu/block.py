@@ -19,6 +19,9 @@ from isa_ros.reu.schedule import (
     Constant, FivePoints, OilStiffness, POINTS, scheduled, ThreePoints)
 import numpy as np
 
+LARGE = 0.1         # of the limit: a proportional part that only a turn of the reference makes
+UNWINDING = 8.0     # a full integral is gone within 10 ms of a turn
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pid(Parameters):
@@ -43,7 +46,8 @@ class Pid(Parameters):
     derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', ge=1e-3, le=25e3)
     limit: float = tunable('largest output', 'output', gt=0.0, le=1e9)
     anti_windup: str = choice(
-        'clamped: the integral is held while the output is saturated', 'clamped', 'none')
+        'clamped: the integral is held while the output is saturated; unwinding: and falls faster '
+        'while a large error opposes it', 'clamped', 'none', 'unwinding')
     retracting_factor: float = tunable(
         'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
     gain_schedule: Constant | OilStiffness | ThreePoints | FivePoints
@@ -54,7 +58,8 @@ BLOCK = np.dtype([
     ('period', 'f8'), ('kp', 'f8'), ('ki', 'f8'), ('kd', 'f8'),
     ('kf', 'f8'), ('kf_of_error', 'f8'),    # K_f of the proportional part, and of I and D
     ('kr', 'f8'), ('kv', 'f8'), ('offset', 'f8'), ('b', 'f8'), ('measured_alpha', 'f8'),
-    ('derivative_alpha', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'), ('retracting', 'f8'),
+    ('derivative_alpha', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'), ('unwinds', 'f8'),
+    ('retracting', 'f8'),
     ('compensation', COMPENSATION), ('schedule', 'f8', (POINTS,))])
 BLOCK_STATE = np.dtype([
     ('integral', 'f8'), ('measured', 'f8'), ('measured_rate', 'f8'), ('error', 'f8'),
@@ -71,8 +76,8 @@ def block_record(sheet: Pid, table: np.ndarray) -> np.record:
         measured_alpha=(low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz)
                         if smooths else 1.0),
         derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
-        limit=sheet.limit, is_clamped=float(sheet.anti_windup == 'clamped'),
-        retracting=sheet.retracting_factor,
+        limit=sheet.limit, is_clamped=float(sheet.anti_windup != 'none'),
+        unwinds=float(sheet.anti_windup == 'unwinding'), retracting=sheet.retracting_factor,
         compensation=compensation_record(sheet.compensation), schedule=table)
 
 
@@ -133,19 +138,38 @@ def uncompensated_for(output, block):
 
 
 @kernel
+def unwound(change, gain, block, state):
+    """
+    Return the integral after a period that changes it by ``change``  (R22).
+
+    A reference that turns round leaves an integral of the wrong sign: while the error opposes it,
+    with a proportional part beyond `LARGE` of the limit, it falls `UNWINDING` times as fast, to 0.
+    """
+    if (state.error * state.integral >= 0.0
+            or abs(gain * block.kp * state.error) <= LARGE * block.limit):
+        return state.integral + change
+    moved = state.integral + UNWINDING * change
+    return moved if moved * state.integral > 0.0 else 0.0
+
+
+@kernel
 def block_step(reference, measured, velocity, place, stroke, block, state):
     """
     Run one period: measure, feed back, output, update.
 
     The schedule is read at ``place`` (m or rad). The integral is held while the realised
-    output is saturated and the error would drive it further  (R5).
+    output is saturated and the error would drive it further  (R5, R22).
     """
     observe(reference, measured, block, state)
     gain = scheduled(place, stroke, block.schedule)
     wanted = demanded(reference, velocity, gain, block, state)
     state.output = max(-block.limit, min(block.limit, wanted))
     if state.output == wanted or state.error * wanted < 0.0 or block.is_clamped == 0.0:
-        state.integral += gain * block.ki * block.period * state.error
+        change = gain * block.ki * block.period * state.error
+        if block.unwinds > 0.0:
+            state.integral = unwound(change, gain, block, state)
+        else:
+            state.integral += change
 
 
 @kernel

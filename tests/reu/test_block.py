@@ -167,6 +167,46 @@ def test_without_anti_windup_the_integral_winds_up():
     assert own.integral == pytest.approx(SHEET.ki * 2000 * PERIOD * 7500.0, rel=1e-9)
 
 
+def wound(anti_windup: str, error: float, integral: float, factor: float = 1.0) -> float:
+    """Return the integral after a period, over K_i T e w, by which it moves as ever."""
+    own, loop = state(), record(anti_windup=anti_windup, kf=0.0, factor=factor)
+    own.integral = integral
+    step(loop, own, error, 0.0)
+    return float((own.integral - integral) / (SHEET.ki * PERIOD * error * factor))
+
+
+def test_an_integral_that_a_large_error_opposes_unwinds_eight_times_as_fast() -> None:
+    """R22: in both directions, from a tenth of the limit on, with the gain of the schedule."""
+    large = 0.1 * LOOP.limit / LOOP.kp
+    for sign in (1.0, -1.0):
+        held = -sign * 0.2 * LOOP.limit
+        assert wound('unwinding', sign * 1.01 * large, held) == pytest.approx(8.0, rel=1e-6)
+        assert wound('unwinding', sign * 0.99 * large, held) == pytest.approx(1.0, rel=1e-6)
+        assert wound('unwinding', sign * 1.01 * large, -held) == pytest.approx(1.0, rel=1e-6)
+        assert wound('clamped', sign * 1.01 * large, held) == pytest.approx(1.0, rel=1e-6)
+        assert wound('unwinding', sign * 0.6 * large, held, 2.0) == pytest.approx(8.0, rel=1e-6)
+    assert block.UNWINDING == 8.0
+
+
+def test_an_integral_unwinds_to_zero_and_not_beyond() -> None:
+    """R22: from there on it grows as ever."""
+    own, loop = state(), record(anti_windup='unwinding', kf=0.0)
+    large = 0.2 * LOOP.limit / LOOP.kp
+    own.integral = -3.0 * SHEET.ki * PERIOD * large
+    step(loop, own, large, 0.0)
+    assert own.integral == 0.0
+    step(loop, own, large, 0.0)
+    assert own.integral == pytest.approx(SHEET.ki * PERIOD * large, rel=1e-12, abs=0.0)
+
+
+def test_an_unwinding_integral_is_held_while_the_output_is_saturated() -> None:
+    """R5 stays in force."""
+    own, loop = state(), record(anti_windup='unwinding')
+    own.integral = held = 0.1 * LOOP.limit
+    assert step(loop, own, 7500.0, 0.0, 1.0) == LOOP.limit
+    assert own.integral == held
+
+
 def test_a_saturated_block_leaves_the_stop_at_once_when_the_error_turns():
     """R5: no windup to unwind, the first opposite error leaves saturation."""
     own = state()
@@ -179,8 +219,10 @@ def test_a_saturated_block_leaves_the_stop_at_once_when_the_error_turns():
        velocity=st.floats(-1.0, 1.0), place=st.floats(-0.01, 0.11))
 def test_compiled_block_equals_its_python_source(reference, force, velocity, place):
     """One period, every state."""
-    loop = record(kd=1e-10, kr=1e-9, measured_filter_hz=800.0, retracting_factor=0.8)
+    loop = record(kd=1e-10, kr=1e-9, measured_filter_hz=800.0, retracting_factor=0.8,
+                  anti_windup='unwinding')
     compiled, python = state(), state()
+    compiled.integral = python.integral = 1e-4
     block.block_step(reference, force, velocity, place, STROKE, loop, compiled)
     block.block_step.py_func(reference, force, velocity, place, STROKE, loop, python)
     assert compiled.tobytes() == python.tobytes()
