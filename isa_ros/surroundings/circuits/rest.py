@@ -8,9 +8,7 @@ else is at the least of what pumps hold (the greatest of them), and relief and u
 from isa_ros.core.units import MPA
 from isa_ros.surroundings.circuits.network import OF_ORIFICE, PER_ELEMENT, PER_NODE
 from isa_ros.surroundings.circuits.nodes import node_content
-from isa_ros.surroundings.circuits.orifice import UnloadingPart
 from isa_ros.surroundings.circuits.plan import Network
-from isa_ros.surroundings.circuits.relief import ReliefPart
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +19,7 @@ def at_rest(sheet: CircuitSupply, network: Network) -> NDArray[np.float64]:
     n, m = len(network.nodes), len(network.elements)
     state = np.zeros(PER_NODE * n + PER_ELEMENT * m)
     low = sheet.with_return() | {sheet.tank}
-    tank = sheet.return_pressure_mpa * MPA
-    high = min([sheet.pressure_mpa * MPA, *(
-        part.opens_mpa * MPA + tank * isinstance(part, ReliefPart)
-        for part in sheet.by_name.values() if isinstance(part, ReliefPart | UnloadingPart))])
+    tank, high = sheet.return_pressure_mpa * MPA, sheet.rest_pressure
     for k, place in enumerate(network.places):
         node = network.nodes[k]
         if node['is_held']:

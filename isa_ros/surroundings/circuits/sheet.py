@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 
 from isa_ros.core.parameter import fault, named_sets, Parameters, section
 from isa_ros.core.suggest import alternatives
+from isa_ros.core.units import MPA
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
 from isa_ros.surroundings.circuits.check import CheckPart
@@ -74,6 +75,14 @@ class CircuitSupply(Parameters):
         """Return the greatest set pressure of its pumps above the tank's."""
         return max(part.pressure_mpa for part in self.by_name.values()
                    if isinstance(part, PumpPart)) + self.return_pressure_mpa
+
+    @property
+    def rest_pressure(self) -> float:
+        """Return what its pumps hold, or a relief or unloading valve less of it, Pa gauge."""
+        tank = self.return_pressure_mpa * MPA
+        return min([self.pressure_mpa * MPA, *(
+            part.opens_mpa * MPA + tank * isinstance(part, ReliefPart)
+            for part in self.by_name.values() if isinstance(part, ReliefPart | UnloadingPart))])
 
     @property
     def return_pressure_mpa(self) -> float:

@@ -76,3 +76,19 @@ def test_of_the_shipped_runs_one_is_fed_with_less_as_its_page_says() -> None:
     found = {name for name, path in shipped(CONFIG).items()
              if any('supply_low' in line for line in idle(load_run(path)).warnings)}
     assert found == {'rig_servo_valve.yaml'}
+
+
+def test_of_a_circuit_it_is_what_its_relief_valve_leaves() -> None:
+            assert found[0].startswith(
+                'cooled_station.yaml: station holds 9 MPa < 11 MPa: cylinder will warn ')
+        run = isa_ros.load('cooled_station', changes={
+            'supplies.station.parts.safety.opens_mpa': opens})
+        found = idle(run.configuration).warnings
+        assert bool(found) is warns
+        simulation = run.simulation()
+        for _ in range(30):
+            simulation.step()
+        assert bool(int(simulation.samples['cylinder'].warnings)) is warns
+        if warns:
+            assert found[0].startswith('cooled_station.yaml: station holds 9 MPa < 11 MPa: '
+                                       'cylinder will warn supply_low')
