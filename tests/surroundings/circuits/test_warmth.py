@@ -5,7 +5,8 @@ import math
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.surroundings.circuits import warmth
 from isa_ros.surroundings.circuits.circuit import Circuit
-from isa_ros.surroundings.circuits.fed import Fed
+from isa_ros.surroundings.circuits.fed import Fed, OwnHeat
+from isa_ros.surroundings.circuits.heat import MixedHeat
 from isa_ros.surroundings.circuits.warmth import STEP
 import numpy as np
 import pytest
@@ -105,6 +106,21 @@ def test_the_heat_is_that_of_losses_shafts_and_actuators() -> None:
         shaft - float(whole['pump_energy']) + float(whole['relief_energy'])
         + float(whole['return_energy']) + 0.9 * float(whole['energy']), rel=1e-12, abs=0.0)
     assert shaft - float(whole['pump_energy']) > 200.0
+
+
+def test_heat_of_actuators_takes_the_place_of_their_energy() -> None:
+    """T10: of those with a temperature of their own, at two manifolds; s of the others' E1."""
+    plain, own = (circuit_of(HOT_STATION, 'left', 'right') for _ in range(2))
+    backs = [back for _, back in plain.pressures]
+    oil = [2e-6, 3e-6], [30.0, 50.0], [1e-6, 1.5e-6]
+    plain.advance_nodes(*oil)
+    own.advance_nodes(*oil, [OwnHeat(12.0, 4e-7, 7.0), OwnHeat(21.0, 6e-7, -3.0)])
+    heat = plain._sheet.heat
+    assert isinstance(heat, MixedHeat)
+    taken = 12.0 + 21.0 - backs[0] * 4e-7 - backs[1] * 6e-7
+    assert float(own.samples[0]['heat'] - plain.samples[0]['heat']) == pytest.approx(
+        7.0 - 3.0 - 0.01 * heat.actuators_percent * taken, rel=1e-9)
+    assert own.samples[0]['energy'] == plain.samples[0]['energy']
 
 
 def test_what_leaks_to_the_outside_takes_its_heat_along() -> None:
