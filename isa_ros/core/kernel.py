@@ -94,6 +94,16 @@ def part_of_kernel(function: Callable[..., Any]) -> Any:
     return Kernel(function, {'inline': 'always', **OPTIONS}) if IS_COMPILED else function
 
 
+def called_kernel(function: Callable[..., Any]) -> Any:
+    """
+    Compile a large function that kernels call in several places, and have it called there.
+
+    Inlined it would be optimised once more for each place; the call is nothing to what it does.
+    The compiler may still inline it, and every bit is the same.
+    """
+    return Kernel(function, {**OPTIONS, 'forceinline': False}) if IS_COMPILED else function
+
+
 def kernel_function(function: _Function) -> _Function:
     """Return a function that Python calls as it is, and kernels as the kernel made of it."""
     if IS_COMPILED:

@@ -67,7 +67,7 @@ def called(package: Path, program: str = MAIN, **environment: str) -> tuple[str,
     return done.stdout, done.stderr
 
 
-@pytest.mark.parametrize('decorator', ['kernel', 'part_of_kernel'])
+@pytest.mark.parametrize('decorator', ['kernel', 'part_of_kernel', 'called_kernel'])
 def test_an_edit_is_noticed_in_a_directory_of_the_user_too(
         package: Path, decorator: str) -> None:
     """Only the callee is edited, and numba looks at the caller's file alone; `CACHE_DIR` stays."""

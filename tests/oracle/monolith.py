@@ -12,7 +12,7 @@ from isa_ros.actuator.integration import CONTINUOUS, STATE_SIZE
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.contact import normal_force
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import called_kernel, kernel
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.rates import plant_rates
@@ -74,7 +74,7 @@ def load_side(y, leg):
     return (x_haa, x_hfe, x_kfe), (r_haa * y.v_haa, r_hfe * y.v_hfe, r_kfe * y.v_kfe)
 
 
-@kernel
+@called_kernel
 def system_rates(bodies, y, supply_pressure, is_held, system, rates):
     """Write the plants' rates; return those of the leg and of the three works."""
     leg = system.legs[0]

@@ -14,7 +14,7 @@ steps of order four, in less time.
 
 import math
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import called_kernel, kernel
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.plant import chambers, servo_valve, spool, valve_record
 from isa_ros.plant.drives import Cylinder
@@ -99,7 +99,7 @@ def ahead(y, h, weights, slopes):
     return a, b, c, d, e, f
 
 
-@kernel
+@called_kernel
 def step(y, h, r, case):
     """Return y after one step of order 8 of ``h`` seconds under the command ``r``."""
     k_1 = slope(y, r, case)

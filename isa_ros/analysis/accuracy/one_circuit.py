@@ -11,7 +11,7 @@ from isa_ros.actuator.inbox import latch, merge, settle as settle_device
 from isa_ros.actuator.integration import COPIES, STAGES, TOTALS_AT, write_rates
 from isa_ros.actuator.kernel import run_loops
 from isa_ros.actuator.rows import Memory
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import called_kernel, kernel
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant.plant import settle
@@ -22,7 +22,7 @@ import numpy as np
 _FREE = 2       # states of the supply: its pressure and the flow of its pump
 
 
-@kernel
+@called_kernel
 def rates_of_all(stage, tau, pressure, pump_flow, supply, memory):
     """Write the rates of a stage of all actuators; return (dP/dt, dQ_pump/dt) of the supply."""
     drawn = 0.0
