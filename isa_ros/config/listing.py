@@ -13,7 +13,7 @@ from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
 from isa_ros.config.runs.robots import FileOf, run_with_robots
-from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.run_config import ROBOTS, RUN, RunConfig
 from isa_ros.config.runs.run_reading import Origins
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.keys import Leaf
@@ -98,7 +98,8 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
         values = {full_key(key, names[0]): value for key, value in values.items()}
     given = changed(tree, values, place.file)
     run, origins = run_with_robots(given, place)
-    return '\n\n'.join(_run_tables(run, origins, tuple(values), FileOf(given, place, run.source)))
+    return '\n\n'.join(_run_tables(
+        run, origins, tuple(values), FileOf(given, place, run.source), given))
 
 
 def rows(parameters: Parameters, section: Section) -> list[ListedValue]:
@@ -132,10 +133,11 @@ def _kind_row(
 
 def _run_tables(
         run: RunConfig, origins: Origins, changes: Sequence[str],
-        file_of: FileOf) -> Iterator[str]:
-    """Return the tables of a run; values at the keys ``changes`` have the source `SET`."""
+        file_of: FileOf, given: Tree) -> Iterator[str]:
+    """Return the tables of the run ``given``; values at ``changes`` have the source `SET`."""
     yield _table(f'values of {run.source}', [
-        _single(leaf, SET if _is_among(leaf.key, changes) else file_of(leaf.key))
+        _single(leaf, SET if _is_among(leaf.key, changes) else
+                'default' if _is_unwritten(leaf, given) else file_of(leaf.key))
         for leaf in RUN.leaves(run, '') if not isinstance(leaf.value, Parameters)])
     kinds = dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked)
     wires = [_table(f'wire of links: {kind}', rows(*wire(kind))) for kind in kinds]
@@ -182,6 +184,13 @@ def _single(leaf: Leaf, source: str) -> ListedValue:
     if row.kind.tree(leaf.value) == row.default:
         return ListedValue(leaf.key, row.default_words, row.kind.unit, '', 'default', row.meaning)
     return ListedValue(leaf.key, _value(leaf.value), row.kind.unit, '', source, row.meaning)
+
+
+def _is_unwritten(leaf: Leaf, given: Tree) -> bool:
+    """Return whether a run file has a value in no unit; a robot's file may have it instead."""
+    ways = (leaf.key, *leaf.row.instead_of)
+    return (len(ways) > 1 and '.' not in leaf.key and ROBOTS not in given
+            and not any(key in given for key in ways))
 
 
 def _title(run: RunConfig, key: str, parameters: Parameters) -> tuple[str, str]:

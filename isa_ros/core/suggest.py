@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 import difflib
 import re
 
-_UNIT = (r'(?:m3|mm|um|cm|m|mrad|rad|deg|mpa|kpa|hpa|pa|bar|psi|lpm|ml|cc|l|khz|hz|ms|us|ns|s|min'
-         r'|kg|g|kn|n|nm|ma|a|kv|v|w|j|ohm|h|celsius|percent)')
+_UNIT = (r'(?:l_min|m3|mm|um|cm|m|mrad|rad|deg|mpa|kpa|hpa|pa|bar|psi|lpm|ml|cc|l|khz|hz|ms|us|ns'
+         r'|s|min|kg|g|kn|n|nm|ma|a|kv|v|w|j|ohm|h|celsius|percent)')
 _UNIT_SUFFIX = re.compile(rf'_(?:per_)?{_UNIT}(?:_per_{_UNIT})*$')
 _MAX_NAMED = 12  # names in a message
 _LONGEST = 60    # characters of a name in a message

@@ -1,6 +1,7 @@
 """`isa params`: every parameter once, with its source."""
 
 from itertools import product
+from pathlib import Path
 import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
@@ -199,3 +200,25 @@ def test_what_a_file_leaves_out_of_a_circuit_has_its_own_source():
             ('parts.safety.opens_mpa', 'pump_station.yaml'),
             ('parts.safety.kind', 'pump_station.yaml')):
         assert f' {source} ' in source_in(text, parameter), parameter
+
+
+BARE = """
+name: own
+supply: {kind: constant, pressure_mpa: 16.0, return_pressure_mpa: 0.0}
+actuators:
+  ram: {model: isa_v5, load: {kind: mass}}
+"""
+
+
+@pytest.mark.parametrize(('more', 'sources'), [
+    ('', ('default', 'default')), ('step_ms: 2.0\n', ('own.yaml', 'default')),
+    ('controller_offset_ns: 140000\n', ('default', 'own.yaml'))])
+def test_a_time_that_the_file_lacks_is_the_default(
+        tmp_path: Path, more: str, sources: tuple[str, str]) -> None:
+    """In ms or ns: the resolved text has it in ns."""
+    path = tmp_path / 'own.yaml'
+    path.write_text(BARE + more)
+    lines = describe(str(path)).splitlines()
+    for key, source in zip(('step_ns', 'controller_offset_ns'), sources):
+        line, = (line for line in lines if line.startswith(f'{key} '))
+        assert re.split(r'\s{2,}', line)[3] == source

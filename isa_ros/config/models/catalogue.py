@@ -84,7 +84,19 @@ class Model:
                    if (entry := entry_at(own, key)) is not None and entry is entry_at(base, key)]
         if lacking:
             raise ConfigError(place.has(
-                f'lacks {listed(lacking)}: {self.name} has none of its own, see your data sheets'))
+                f'lacks {listed(lacking)}: {self.name} has none of its own, see your data sheets'
+                + ''.join(_misspelled(own, base, key) for key in lacking)))
+
+
+def _misspelled(own: Section, base: Section, key: str) -> str:
+    """Return a hint for a key that lacks, if a name that is not the model's stands for it."""
+    below, _, name = key.rpartition('.')
+    there, known = entry_at(own, below), entry_at(base, below)
+    if not isinstance(there, dict) or not isinstance(known, dict):
+        return ''
+    return ''.join(
+        f'; {other}: {hint}' for other in there if other not in known
+        and (hint := alternatives(other, [name])).startswith(('did you mean', 'the key is')))
 
 
 def model_names() -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, ParameterSet, Value
 from isa_ros.config.text.sections import names_at, Place, Section
-from isa_ros.core.suggest import alternatives
+from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.circuits.accumulator import AccumulatorPart
@@ -213,7 +213,9 @@ def refuse_misfed(
             if name in fed:
                 raise ConfigError(f'{where}: {name!r} is already fed by {fed[name]}')
             fed[name] = supply.name
-    for name in actuators:
-        if name not in fed:
-            raise ConfigError(
-                f'{place}: {name!r} is not fed; add it to the feeds of one of them')
+    missing = [name for name in actuators if name not in fed]
+    if missing:
+        verb, them = ('is', 'it') if len(missing) == 1 else ('are', 'them')
+        raise ConfigError(
+            f'{place}: {listed([repr(name) for name in missing])} {verb} not fed; add {them} to '
+            'the feeds of one of them')

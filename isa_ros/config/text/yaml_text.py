@@ -19,6 +19,7 @@ MAX_BYTES = 1 << 20   # of one file; the largest shipped one has 8 kB
 MAX_NODES = 20_000    # of one file
 MAX_DEPTH = 16        # of nested sections
 MAX_DIGITS = 300      # of a whole number: a double holds 308
+_TAB = 'begins with a tab, must be indented by spaces'
 
 
 _SCALARS = (
@@ -137,13 +138,20 @@ def parse(text: str, name: str) -> Tree:
         node = loader.get_single_node()
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
-        raise ConfigError(f'{name}: line {line}: {error.problem or error.context}') from error
+        problem = _TAB if _is_at_tab(text, line) else error.problem or error.context
+        raise ConfigError(f'{name}: line {line}: {problem}') from error
     except yaml.YAMLError as error:
         raise ConfigError(f'{name}: is not YAML: {str(error).splitlines()[0]}') from error
     if not isinstance(node, yaml.MappingNode):
         raise ConfigError(f'{name}: must be sections of `key: value`')
     tree: Tree = _plain(node, loader, name)
     return tree
+
+
+def _is_at_tab(text: str, line: int) -> bool:
+    """Return whether the indentation of a line, from 1 on, has a tab."""
+    lines = text.splitlines()[line - 1:line]
+    return any('\t' in own[:len(own) - len(own.lstrip())] for own in lines)
 
 
 def read(path: Path) -> Tree:

@@ -84,7 +84,7 @@ def test_a_run_of_one_actuator_keeps_the_supply_of_its_own(tmp_path: Path) -> No
      "supplies.main.feeds: 'hip' is already fed by main"),
     (f'supplies: {{main: {CONSTANT}, feeds: hip}}}}\n', 'supplies.main.feeds'),
     (f'supplies: {{main: {CONSTANT}, feeds: [hip, knee]}}}}\n', "supplies: 'ankle' is not fed"),
-    ('supplies: {}\n', "supplies: 'hip' is not fed"),
+    ('supplies: {}\n', "supplies: 'hip', 'knee', 'ankle' are not fed; add them to "),
     ('supplies: [main]\n', 'supplies'),
     (f'supplies: {{main: {CONSTANT}, feed: [hip, knee, ankle]}}}}\n', 'lacks feeds'),
     (f'supplies: {{main: {CONSTANT}, flow: 1, feeds: [hip, knee, ankle]}}}}\n',

@@ -29,6 +29,8 @@ def parse(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> An
     ('a: ! 3\n', 'line 1: tags'),
     ('!!map {a: 1}\n', 'line 1: tags'),
     ('a: 1' + '0' * 300 + '\n', 'x.yaml: line 1: a number of 301 digits, must be <= 300'),
+    ('a:\n\tb: 1\n', '^x.yaml: line 2: begins with a tab, must be indented by spaces$'),
+    ('a:\n  b: 1\n \tc: 2\n', '^x.yaml: line 3: begins with a tab'),
     ('- 1\n', 'x.yaml: must be sections'),
     ('', 'x.yaml: must be sections'),
     ('a: 1\n---\nb: 2\n', 'x.yaml: line 2: '),
