@@ -16,6 +16,8 @@ from isa_ros.plant.plant import plant_record
 import numpy as np
 
 MODELS = ('smart_manifold', 'isa_v2', 'isa_v5')
+TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
+"""The tick of most runs."""
 FINE = Timing(step_ns=100_000, controller_offset_ns=20_000)
 """A tick as short as the current loop's period, for measuring transients."""
 

@@ -9,10 +9,9 @@ from isa_ros.actuator.link import LinkSheet
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.timing import Timing
 from isa_ros.core.record import rows_of
-from tests.sheets import actuator_sheet, smart_actuator
+from tests.sheets import actuator_sheet, smart_actuator, TICK
 
 MODEL = 'isa_v5'
-TICK = Timing(1_000_000, 120_000)
 STEPS = 50     # of the plant in a tick
 
 

@@ -7,9 +7,8 @@ from isa_ros.errors import SetpointError, SimulationDiverged
 import numpy as np
 import pytest
 from tests.sheets import (
-    actuator_sheet, FINE, MODELS, override, plant_row, setpoint, smart_actuator)
+    actuator_sheet, FINE, MODELS, override, plant_row, setpoint, smart_actuator, TICK)
 
-TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
 OVER_STROKE = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
 
 

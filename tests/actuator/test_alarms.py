@@ -7,8 +7,8 @@ from isa_ros.core.conditions import BITS, conditions
 from isa_ros.reu.reactions import protect
 import numpy as np
 import pytest
-from tests.actuator.test_protection import CONVERSION_STEPS, own, protected, TICK, ticks
-from tests.sheets import actuator_sheet, FINE, override, setpoint, smart_actuator
+from tests.actuator.protected import CONVERSION_STEPS, own, protected, ticks
+from tests.sheets import actuator_sheet, FINE, override, setpoint, smart_actuator, TICK
 
 
 class Shadow:

@@ -7,9 +7,8 @@ from isa_ros.scripting.run import load
 from isa_ros.testing import assert_replays
 from isa_ros.tick.trips import TripWarning
 import pytest
-from tests.actuator.test_actuator import TICK
-from tests.actuator.test_tuning import run
-from tests.sheets import request, setpoint, smart_actuator
+from tests.actuator.efforts import run
+from tests.sheets import request, setpoint, smart_actuator, TICK
 
 LOST = {'plant.sensors.force.bias': 4000.0}
 

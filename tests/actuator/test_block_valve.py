@@ -12,9 +12,8 @@ from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Mass
 from isa_ros.plant.block_valve import PoppetBlock
 import pytest
-from tests.actuator.test_actuator import TICK
 from tests.actuator.test_watchdog import FROZEN, moving, SOUND
-from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator, TICK
 
 HANGING = Mass(inertia=50.0, force=-3000.0)
 SHIFTED = {'plant.spool.null_bias.current_ma': 2.0}

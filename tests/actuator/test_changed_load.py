@@ -9,8 +9,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, LocalLoad, Mass
 import numpy as np
 import pytest
-from tests.actuator.test_actuator import TICK
-from tests.sheets import actuator_sheet, MODELS, own_load, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, MODELS, own_load, setpoint, smart_actuator, TICK
 
 FORCE, INERTIA, PLACE = 'load.force', 'load.inertia', 'load.displacement'
 KINDS = [(model, kind) for model in MODELS for kind in ('blocked', 'wheel', 'mass', 'wood')]

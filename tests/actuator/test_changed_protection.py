@@ -6,7 +6,7 @@ from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import ENABLED, FAULT
 from isa_ros.errors import ConfigError
 import pytest
-from tests.actuator.test_protection import clear, own, protected, ticks
+from tests.actuator.protected import clear, own, protected, ticks
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
 OVERSPEED = f'{PROTECTION}overspeed.'

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from tests.actuator.closed_cylinder import ClosedCylinder
 from tests.actuator.cushion_masses import EASE, FILLED, MASS, masses, OfMasses, OPENS, SPEED
-from tests.actuator.test_energy import account, CLOSES, remainder
+from tests.actuator.energy import account, CLOSES, remainder
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
 CONSERVED = 1e-9        # of the mass in a chamber

@@ -6,10 +6,9 @@ from isa_ros.core.changeable import changeables
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Mass
 import pytest
-from tests.actuator.test_actuator import TICK
-from tests.actuator.test_energy import account, CLOSES, IMPACTS, remainder
-from tests.actuator.test_tuning import run
-from tests.sheets import actuator_sheet, MODELS, override, setpoint, smart_actuator
+from tests.actuator.efforts import run
+from tests.actuator.energy import account, CLOSES, IMPACTS, remainder
+from tests.sheets import actuator_sheet, MODELS, override, setpoint, smart_actuator, TICK
 
 VALUES = {
     'plant.spool.stuck': 1.0, 'plant.spool.null_bias.current_ma': 0.4,

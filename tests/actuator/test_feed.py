@@ -21,7 +21,7 @@ import numba
 import numpy as np
 import pytest
 from tests.sheets import FINE, setpoint, smart_actuator
-from tests.surroundings.test_supply import SHEET
+from tests.surroundings.supplied import SHEET
 
 MS = 1_000_000
 TICK = Timing(step_ns=MS, controller_offset_ns=120_000)

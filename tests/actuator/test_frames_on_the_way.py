@@ -9,8 +9,8 @@ from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
-from tests.actuator.linked import actuator, linked, MODEL, STEPS, TICK
-from tests.sheets import actuator_sheet, own_load, setpoint
+from tests.actuator.linked import actuator, linked, MODEL, STEPS
+from tests.sheets import actuator_sheet, own_load, setpoint, TICK
 
 
 def exchanged(is_compiled: bool) -> bytes:

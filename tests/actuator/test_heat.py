@@ -5,7 +5,6 @@ from dataclasses import replace
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.errors import ParameterError
@@ -15,9 +14,8 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import refuse_too_fast
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet, MODELS, override, own_load, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, MODELS, override, own_load, setpoint, smart_actuator, TICK
 
-TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
 LOSSES = ('leakage', 'throttling', 'cross_port', 'relief', 'friction', 'damping')
 
 

@@ -1,44 +1,14 @@
 """Protection of a whole actuator: what trips, when, and what it does then."""
 
-from typing import Any
-
-from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.timing import Timing
 from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE, SPOOL
-from isa_ros.core.signals import (
-    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
+from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
+from tests.actuator.protected import (
+    clear, CONVERSION_STEPS, OFFSET_STEPS, own, protected, TICK, ticks)
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
-
-TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
-OFFSET_STEPS, CONVERSION_STEPS = 6, 5
-
-
-def protected(timing: Timing = TICK, load: str = 'mass', **values: Any) -> SmartActuator:
-    """Return an ISA v5 with other values of its protection; ``__`` separates keys."""
-    sheet = actuator_sheet('isa_v5')
-    for path, value in values.items():
-        sheet = override(sheet, f'reu.protection.{path.replace("__", ".")}', value)
-    return smart_actuator('isa_v5', load, sheet=sheet, timing=timing)
-
-
-def ticks(actuator: SmartActuator, n: int) -> None:
-    for _ in range(n):
-        actuator.tick()
-
-
-def clear(actuator: SmartActuator) -> None:
-    """Clear the fault, and enable again in the same tick."""
-    command = np.zeros(1, COMMAND)[0]
-    command['kinds'], command['is_enabled'] = HAS_ENABLE | HAS_CLEAR_FAULT, 1
-    actuator.accept(command)
-
-
-def own(actuator: SmartActuator) -> np.record:
-    return actuator.memory.reu.view(np.recarray)[0].protection
 
 
 def test_the_watchdog_holds_until_the_next_setpoint() -> None:

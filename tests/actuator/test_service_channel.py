@@ -13,8 +13,8 @@ from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
-from tests.actuator.linked import actuator, linked, TICK
-from tests.sheets import actuator_sheet, own_load
+from tests.actuator.linked import actuator, linked
+from tests.sheets import actuator_sheet, own_load, TICK
 
 KP, TRIP, STUCK = 'force.kp', 'reu.protection.overload.trip', 'plant.spool.stuck'
 DEAD = 'link.loss'

@@ -5,8 +5,8 @@ from isa_ros.core.saved_state import MAX_TICKS
 from isa_ros.errors import ConfigError, SimulationDiverged
 import numpy as np
 import pytest
-from tests.actuator.test_tuning import run, TICK
-from tests.sheets import setpoint, smart_actuator
+from tests.actuator.efforts import run
+from tests.sheets import setpoint, smart_actuator, TICK
 
 BROKEN = pytest.mark.parametrize(('path', 'value'), [
     ('body.plant.chambers.p_a', np.nan), ('reu.force.integral', -np.inf), ('port.x0', np.nan),

@@ -4,20 +4,8 @@ from isa_ros.actuator import tuning
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
-from tests.actuator.test_actuator import TICK
-from tests.sheets import actuator_sheet, MODELS, override, setpoint, smart_actuator
-
-EFFORTS = (0.0, 50.0, -30.0, 80.0, 20.0, 60.0, -10.0, 40.0)  # N | Nm
-
-
-def run(actuator, ticks):
-    """Tick under changing efforts and return the samples' bytes."""
-    samples = []
-    for k in range(ticks):
-        actuator.accept(setpoint(effort=EFFORTS[k % len(EFFORTS)]))
-        actuator.tick()
-        samples.append(actuator.sample.tobytes())
-    return samples
+from tests.actuator.efforts import run
+from tests.sheets import actuator_sheet, MODELS, override, setpoint, smart_actuator, TICK
 
 
 @pytest.mark.parametrize('model', MODELS)

@@ -4,9 +4,8 @@ from isa_ros.core.conditions import conditions
 from isa_ros.core.device import DISABLED, FAULT
 from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
 import pytest
-from tests.actuator.test_actuator import TICK
-from tests.actuator.test_tuning import run
-from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator
+from tests.actuator.efforts import run
+from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator, TICK
 
 FROZEN, SOUND = {'reu.frozen': 1.0}, {'reu.frozen': 0.0}
 READ = ('position', 'velocity', 'force', 'pressure_a', 'pressure_b', 'spool', 'current',

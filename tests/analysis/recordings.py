@@ -3,13 +3,11 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from isa_ros.actuator.timing import Timing
 from isa_ros.analysis.signals.recording import Recording
 from isa_ros.core.signals import SAMPLE
 import numpy as np
-from tests.sheets import actuator_sheet, override, plant_row, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, override, plant_row, setpoint, smart_actuator, TICK
 
-TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
 SUPPLY = 20.7e6
 
 # Stiffness, damping; then seconds, centre from mid stroke, amplitude and frequency of sines:

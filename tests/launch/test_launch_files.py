@@ -13,7 +13,7 @@ import pytest
 from tests.launch import stand_ins
 from tests.launch.launched import ended, parameters
 from tests.launch.stand_ins import Context, ProcessExited
-from tests.scripting.test_two_bodies import two_legs
+from tests.scripting.legs import two_legs
 import yaml
 
 

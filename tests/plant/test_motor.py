@@ -14,7 +14,7 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.plant.sheet_fit import fits
 import numpy as np
 import pytest
-from tests.actuator.test_energy import account, CLOSES, remainder
+from tests.actuator.energy import account, CLOSES, remainder
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
 SHEET = actuator_sheet('hydraulic_motor')

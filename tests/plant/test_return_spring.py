@@ -16,8 +16,8 @@ from isa_ros.plant.service_lines import sensed_pressures
 import numpy as np
 import pytest
 from tests.actuator.closed_cylinder import ClosedCylinder
+from tests.actuator.energy import account, CLOSES, remainder
 from tests.actuator.hosed_cylinder import CHECK, COUNTERBALANCE, HOSES
-from tests.actuator.test_energy import account, CLOSES, remainder
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
 SPRING = CoilSpring(preload=800.0, stiffness=6e3, open_to='tank')

@@ -4,18 +4,17 @@ from pathlib import Path
 import random
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.writer import BagWriter
 from isa_ros.config.models.fault_catalogue import ACTUATOR, common_faults
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.replay.replay import recorded_inputs, Rerun
-from isa_ros.scenario.scenario import idle, load_scenario, Scenario
-from isa_ros.scripting.result import Result, simulated
+from isa_ros.replay.replay import recorded_inputs
+from isa_ros.scenario.scenario import idle, load_scenario
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
+from tests.replay.replayed import content, replayed, result_of
 from tests.runs import ACCUMULATOR, BUS, hip_and_knee
 
 RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))], BUS)
@@ -36,24 +35,6 @@ def drawn(seed: int) -> list[Tree]:
             tree['until_s'] = (begin + own.randint(1, 60)) * 1e-3
         faults.append(tree)
     return faults
-
-
-def result_of(scenario: Scenario) -> Result:
-    assert scenario.n_ticks is not None
-    return simulated(Simulation(scenario), scenario.n_ticks)
-
-
-def content(bag: Path) -> bytes:
-    path, = bag.glob('*.mcap')
-    return path.read_bytes()
-
-
-def replayed(bag: Path, out: Path) -> bytes:
-    """Return the bytes of the bag that a replay records."""
-    again = Rerun(Bag(bag))
-    with BagWriter(out, again.topics, Bag(bag).provenance) as writer:
-        again.simulate(writer)
-    return content(out)
 
 
 def check(seed: int, directory: Path) -> int:

@@ -9,7 +9,7 @@ from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
 import pytest
 from tests.parts import TICKS, written
-from tests.replay.test_replay_faults import content
+from tests.replay.replayed import content
 
 pytestmark = pytest.mark.filterwarnings('ignore::isa_ros.tick.trips.TripWarning')
 

@@ -8,7 +8,7 @@ from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
-from tests.ros.test_steady_ticks import noted
+from tests.ros.driven import noted
 
 pytestmark = pytest.mark.ros
 

@@ -21,9 +21,9 @@ from isa_ros.tick.source import ScheduledSource
 from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 import pytest
+from tests.ros.driven import driven, Robot
 from tests.ros.lockstep.participants import NAMES
 from tests.ros.started import DEADLINE_S
-from tests.ros.test_steady_ticks import driven, Robot
 from tests.tick.quietly import advance
 
 pytestmark = [pytest.mark.ros, pytest.mark.skipif(

@@ -1,21 +1,14 @@
 """Real actuators whose ticks run in the compiled loop, in a run with a coordinator."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-import threading
 import time
 
-from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import DEFAULT_TIMING
 from isa_ros.core.kernel import IS_COMPILED
-from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import SimulationDiverged
-from isa_ros.nodes.actuator.node import _APPLIED, ActuatorNode, NodeSetup
+from isa_ros.nodes.actuator.node import _APPLIED
 from isa_ros.nodes.lockstep import (
     coordinator_end as lockstep, participant_end as participant, steady_ticks as steady)
-from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
-from isa_ros.nodes.lockstep.roles import ActuatorRole
-from isa_ros.nodes.lockstep.steady_ticks import steady_ticks, SteadyTicks
+from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_tick
@@ -23,62 +16,19 @@ from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
-from tests.ros.lockstep.participants import make_transport, NAMES, rows_of_two
+from tests.ros.driven import driven, noted
 from tests.ros.started import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.skipif(
     not IS_COMPILED, reason='the loop is machine code')]
 
 
-class Robot:
-    """Two actuators with loads of their own on threads, and their coordinator."""
-
-    def __init__(self, observer, ends: list[ParticipantEnd], nodes: list[ActuatorNode]) -> None:
-        self.transport: LockstepTransport = make_transport(observer)
-        self.ends, self.nodes, self.rows = ends, nodes, rows_of_two()
-        starts = self.transport._run.starts
-        starts['position'], starts['supply_pressure'] = (0.03, 0.04), 20.7e6
-        self.join()
-
-    def join(self) -> None:
-        self.transport.join(self.rows)
-        self.transport.begin()
-
-    def tick(self, number: int, target: float | None = None) -> bytes:
-        rows = self.rows
-        rows.ports['supply_pressure'] = 20.7e6
-        rows.commands['kinds'] = 0 if target is None else HAS_SETPOINT
-        for name, value in ('position', target), ('stiffness', np.nan), ('damping', np.nan):
-            rows.commands[name] = 0.0 if value is None else value
-        self.transport.send(number, rows)
-        self.transport.receive(rows)
-        return rows.replies.tobytes() + rows.samples.tobytes() + rows.applied.tobytes()
+def target(tick: int) -> float | None:
+    return 0.03 if tick == 20 else None
 
 
-@contextmanager
-def driven(observer, is_looped: bool = True) -> Iterator[Robot]:
-    is_over = threading.Event()
-    nodes, ends = [], []
-    for name in NAMES:
-        setup = NodeSetup(default_actuator('isa_v5', name), DEFAULT_TIMING)
-        node = ActuatorNode(lambda _, setup=setup: setup, name, has_mailbox=True,
-                            context=observer.context, enable_rosout=False)
-        role = ActuatorRole(node)
-        role.digest = b'same'
-        nodes.append(node)
-        ends.append(ParticipantEnd(node, role, name,
-                                   steady_ticks(node, role) if is_looped else None))
-    threads = [threading.Thread(target=end.spin, args=(is_over.is_set,)) for end in ends]
-    for thread in threads:
-        thread.start()
-    try:
-        yield Robot(observer, ends, nodes)
-    finally:
-        is_over.set()
-        for thread in threads:
-            thread.join()
-        for node in nodes:
-            node.destroy_node()
+def command_at(tick: int) -> float | None:
+    return 0.03 + 1e-5 * tick if 20 <= tick < 70 else None
 
 
 @pytest.fixture
@@ -93,10 +43,6 @@ def looped(monkeypatch) -> list[int]:
         return ended
     monkeypatch.setattr(SteadyTicks, 'run', note)
     return done
-
-
-def target(tick: int) -> float | None:
-    return 0.03 if tick == 20 else None
 
 
 def test_a_run_is_the_same_with_and_without_the_loop(observer, looped):
@@ -190,21 +136,6 @@ def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch
             robot.transport.close()
         assert 40 <= len(taken) <= 50   # all but those with a changed parameter and the first
     assert results[0] == results[1]
-
-
-def command_at(tick: int) -> float | None:
-    return 0.03 + 1e-5 * tick if 20 <= tick < 70 else None
-
-
-def noted(outlet, is_subscribed: bool, messages: list[tuple[int, bytes]]) -> None:
-    """Let an outlet note the messages that are kept; as with a subscription if there is one."""
-    def note(given):
-        messages.extend((slot, given[slot]) for slot, is_kept in enumerate(outlet._is_kept)
-                        if is_kept and given[slot] is not None)
-
-    def refresh():
-        outlet._countdown, outlet.is_subscribed = 20, is_subscribed
-    outlet.publish, outlet.refresh = note, refresh
 
 
 def test_what_is_kept_for_later_subscriptions_is_the_same(observer, looped):

@@ -17,7 +17,7 @@ from isa_ros.run.wire.steps import decode_step, encode_tick
 from isa_ros.tick.exchange import Rows
 import numpy as np
 from tests.actuator.linked import link_of
-from tests.run.test_wire import filled
+from tests.run.filled import filled
 
 RUN, INDEX, N = 0x1234_5678_9ABC_DEF0, 1, 3
 FAR_NS = 2**62          # of the host's clock: never due

@@ -16,7 +16,7 @@ from isa_ros.run.wire.steps import encode_tick
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
-from tests.run.test_wire import filled, LEG
+from tests.run.filled import filled, LEG
 
 RUN, TICK, N = 0x1234_5678_9ABC_DEF0, 2**33 + 5, 3
 SLICE_US = 20_000

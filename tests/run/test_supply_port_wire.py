@@ -8,7 +8,7 @@ from isa_ros.run.wire.steps import decode_step, encode_tick
 from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
-from tests.run.test_wire import filled
+from tests.run.filled import filled
 
 NAMES = ['a', 'b', 'c']
 PORTED = Roster(NAMES, ['supply_0'], {}, True)

@@ -13,52 +13,17 @@ from isa_ros.run.wire.steps import (
     decode_step, encode_begin, encode_change, encode_end, encode_hello, encode_restore,
     encode_save, encode_tick, StepKind)
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_SAMPLE
-from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
-from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import UInt8MultiArray
+from tests.run.filled import filled, LEG, rows
 
 RUN_IDS = strategies.integers(1, 2**63)
 TICKS = strategies.integers(0, 2**62)
 _ROWS = 20  # byte of a step's number of participants: after prefix, version and kind
-
-
-def rows(dtype: np.dtype, n: int) -> np.ndarray:
-    """Return rows whose bytes all differ."""
-    return np.frombuffer(bytes(k % 251 for k in range(n * dtype.itemsize)), dtype).copy()
-
-
-LEG = {'leg': LEG_SAMPLE}
 TWO = {'leg': LEG_SAMPLE, 'cart': np.dtype([('height', '<f8')])}
 BODIES = strategies.sampled_from([{}, LEG, TWO])
-
-
-class Shows:
-    """A body of which only its sample matters."""
-
-    def __init__(self, record: np.dtype) -> None:
-        self.sample = rows(record, 1)
-
-
-class Outside:
-    """Surroundings of which only what they show matters."""
-
-    def __init__(self, n_supplies: int, bodies: Mapping[str, np.dtype]) -> None:
-        self.supplies = rows(SUPPLY_SAMPLE, n_supplies)
-        self.has_supply_ports = False
-        self.bodies = {name: Shows(record) for name, record in bodies.items()}
-        for k, body in enumerate(self.bodies.values()):
-            body.sample.view(np.uint8)[:] += np.uint8(97 * k)   # no two alike
-
-
-def filled(n: int, n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Rows:
-    """Return an exchange of ``n`` actuators whose bytes all differ."""
-    made = Rows(n, Outside(n_supplies, bodies))
-    for name in ('ports', 'commands', 'samples'):
-        getattr(made, name)[:] = rows(getattr(made, name).dtype, n)
-    return made
 
 
 def roster(n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Roster:

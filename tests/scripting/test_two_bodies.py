@@ -1,6 +1,5 @@
 """Two legs in one run: named columns, topics, starts and states; a bag that replays."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -8,28 +7,15 @@ import isa_ros
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
 from isa_ros.config.listing import describe
-from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_reading import run_of_text
-from isa_ros.config.text.yaml_text import dump, read
+from isa_ros.config.text.yaml_text import dump
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
 import numpy as np
 import pytest
+from tests.scripting.legs import two_legs
 
 TICKS = 20
-IMU = {'trunk': {'link': 'slider_link', 'rate_hz': 500.0, 'gyro_sigma': 0.01}}
-
-
-def two_legs() -> dict[str, Any]:
-    """Return the run file of two shipped legs, left and right."""
-    tree = read(find('leg', CONFIG))
-    leg, actuators = tree.pop('leg'), tree.pop('actuators')
-    sides = ('left', 'right')
-    return json.loads(json.dumps({**tree, 'actuators': {
-        f'{side}_{name}': own for side in sides for name, own in actuators.items()},
-        'bodies': {side: {'kind': 'leg', **leg, 'imus': IMU, 'joints': {
-            joint: f'{side}_{name}' for joint, name in leg['joints'].items()}}
-            for side in sides}}))     # nothing is shared
 
 
 def started(**starts: dict[str, float]) -> isa_ros.Run:

@@ -12,7 +12,7 @@ from isa_ros.surroundings.return_line import SUPPLY_STEP
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.surroundings.test_supply import MS, SHEET, SLOPE
+from tests.surroundings.supplied import MS, SHEET, SLOPE
 
 IDEAL = supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
 LAG = LagDump(time_constant_ms=40.0, opened=0.0)

@@ -11,13 +11,8 @@ from isa_ros.surroundings.accumulator import stored_energy, SUPPLY, supply_rates
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from tests.surroundings.supplied import MS, SHEET, SLOPE
 
-SHEET = supply.AccumulatorSupply(
-    pressure_mpa=20.7, return_pressure_mpa=0.0, gas_volume_l=0.32, precharge_mpa=12.0,
-    polytropic_exponent=1.4, line_volume_l=0.2, bulk_modulus=7e8, pump_flow_lpm=12.0,
-    pump_lag_s=0.03, pump_band_mpa=0.5, relief_mpa=22.5, relief_lpm_per_mpa=24.0)
-MS = 1_000_000
-SLOPE = 2e-12  # m3/s/Pa, of three valves wide open
 LINE = return_line.VolumeReturn(oil_volume_l=10.0, bulk_modulus=1e9, tank_lpm_per_mpa=12.0)
 C_LINE, G_TANK = 10e-3 / 1e9, 12.0 * LPM / 1e6  # a time constant of 50 ms
 

@@ -14,7 +14,7 @@ from isa_ros.surroundings.supply_port import FedNode, fill_feeds, MovingPort, Su
 import numpy as np
 import pytest
 from scripts.measure_supply_port import tree_of
-from tests.surroundings.test_supply import SHEET
+from tests.surroundings.supplied import SHEET
 
 MS = 1_000_000
 NODE = FedNode(20e6, 2e-13, 3e-4, 5e-11, 7e-2)

@@ -13,7 +13,7 @@ from isa_ros.replay.replay import recorded_inputs
 from isa_ros.scenario.scenario import scenario_of
 from isa_ros.tick.emergency_stop import LONGEST_STOP
 import pytest
-from tests.replay.test_replay_faults import content, replayed
+from tests.replay.replayed import content, replayed
 from tests.tick.stopped_group import (
     advance, dumped, ENDED_MS, LINKED, moving, run, SCENARIO, SHIFTED, states, tree)
 

@@ -10,7 +10,7 @@ from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.messages import JointStates
 import pytest
-from tests.scripting.test_two_bodies import two_legs
+from tests.scripting.legs import two_legs
 
 FILES = {name: path for name, path in shipped(CONTROLLERS).items() if name.startswith('leg_')}
 LEG = isa_ros.load('leg').configuration.leg

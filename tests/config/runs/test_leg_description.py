@@ -15,7 +15,7 @@ from isa_ros.surroundings.messages import Inertial
 import numpy as np
 import pytest
 from scripts.write_urdf import texts
-from tests.scripting.test_two_bodies import two_legs
+from tests.scripting.legs import two_legs
 
 PLACE = (0.3, -0.02, 0.05)
 IMUS = {link.removesuffix('_link'): dict(zip(('x_mm', 'y_mm', 'z_mm'), (300.0, -20.0, 50.0)),

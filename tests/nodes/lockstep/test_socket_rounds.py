@@ -13,7 +13,7 @@ from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import encode_tick
 import numpy as np
 import pytest
-from tests.run.test_wire import filled
+from tests.run.filled import filled
 
 RUN = secrets.randbits(63)
 NAMES = ['haa', 'kfe', 'follower']

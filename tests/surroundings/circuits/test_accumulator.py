@@ -9,7 +9,7 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import Bench, circuit_of, sheet_of, SIMPLE
-from tests.surroundings.circuits.test_circuit import surplus
+from tests.surroundings.circuits.station import surplus
 
 TAU, KAPPA = 0.05, 1.4
 BUFFER = 'buffer: {kind: accumulator, at: main, gas_volume_l: 1.0, precharge_mpa: 10.0, ' \

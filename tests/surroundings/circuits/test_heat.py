@@ -12,7 +12,7 @@ from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of, SIMPLE
-from tests.surroundings.circuits.test_circuit import STATION
+from tests.surroundings.circuits.station import STATION
 
 HEAT = 'heat: {kind: mixed, oil_volume_l: 0.5, metal_heat_capacity: 120.0, start_celsius: 31.0, ' \
     'air_celsius: 17.0, walls_w_per_k: 3.0, actuators_percent: 90.0, oil: {density: 860.0, ' \

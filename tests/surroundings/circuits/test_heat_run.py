@@ -11,7 +11,7 @@ from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
-from tests.replay.test_replay_faults import content, replayed, result_of
+from tests.replay.replayed import content, replayed, result_of
 
 SCENARIO = {'name': 'warmed', 'duration_s': 0.3, 'tracks': {'cylinder': [
     {'t_s': 0.0, 'position': 'hold'},

@@ -6,7 +6,7 @@ from isa_ros.surroundings.circuits.nodes import (
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import Bench, circuit_of, SIMPLE
-from tests.surroundings.circuits.test_circuit import surplus
+from tests.surroundings.circuits.station import surplus
 
 BUFFER = 'buffer: {kind: accumulator, at: main, gas_volume_l: 1.0, precharge_mpa: 10.0}\n'
 STANDS = SIMPLE.replace('1500.0, leakage_lpm_per_mpa: 0.1', '0.0')

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from isa_ros.analysis.report.energy import (
-    energy_table, parts_table, recorded_accounts, text_of)
+from isa_ros.analysis.report.energy import energy_table, parts_table, recorded_accounts, text_of
 from isa_ros.analysis.signals.recorded_result import read as read_bag
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
@@ -17,7 +16,7 @@ from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 from isa_ros.tick.trips import TripWarning
 import numpy as np
 import pytest
-from tests.replay.test_replay_faults import content, replayed, result_of
+from tests.replay.replayed import content, replayed, result_of
 
 SCENARIO = {'name': 'pumped', 'duration_s': 0.12, 'tracks': {
     'left': [

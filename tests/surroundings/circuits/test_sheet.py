@@ -4,7 +4,7 @@ from isa_ros.core.changeable import changeables, with_changes
 from isa_ros.errors import ConfigError
 import pytest
 from tests.surroundings.circuits.sheets import sheet_of, SIMPLE
-from tests.surroundings.circuits.test_circuit import STATION
+from tests.surroundings.circuits.station import STATION
 
 
 @pytest.mark.parametrize(('text', 'said'), [

@@ -10,7 +10,7 @@ from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.tick.trips import TripWarning
 import pytest
-from tests.surroundings.circuits.test_circuit import surplus
+from tests.surroundings.circuits.station import surplus
 
 SECONDS = {'cooled_station': 1.0, 'crane_circuit': 3.0, 'pump_station': 1.6,
            'quadruped_power_unit': 1.0, 'warm_stand': 1.0}

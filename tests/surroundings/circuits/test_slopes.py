@@ -9,7 +9,7 @@ from isa_ros.surroundings.circuits.slopes import flow_slope, inflow_slope, inflo
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import Bench
-from tests.surroundings.circuits.test_circuit import STATION
+from tests.surroundings.circuits.station import STATION
 
 LEAKING = STATION.replace(
     'rated_lpm: 60.0}\nstored', 'rated_lpm: 60.0, leakage_lpm_per_mpa: 0.5}\nstored').replace(

@@ -11,7 +11,7 @@ from isa_ros.surroundings.circuits.plan import Network, network_of
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of, SIMPLE, SLOPE
-from tests.surroundings.circuits.test_circuit import STATION
+from tests.surroundings.circuits.station import STATION
 
 
 def linearised(network: Network) -> np.ndarray:

@@ -7,7 +7,7 @@ from isa_ros.surroundings.supply_port import FedNode
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of
-from tests.surroundings.circuits.test_circuit import driven, LPM, STATION
+from tests.surroundings.circuits.station import driven, LPM, STATION
 
 FED = ('left', 'right')
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of, SIMPLE
-from tests.surroundings.circuits.test_circuit import LPM, STATION
+from tests.surroundings.circuits.station import LPM, STATION
 
 
 def test_the_emergency_stop_dumps_and_shuts() -> None:

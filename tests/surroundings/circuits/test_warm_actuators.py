@@ -13,7 +13,7 @@ from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.replay.test_replay_faults import content, replayed, result_of
+from tests.replay.replayed import content, replayed, result_of
 
 LPM = 1e-3 / 60.0
 NULL = {'current_ma': 0.0, 'supply_ma_per_mpa': 0.0, 'return_ma_per_mpa': 0.0,

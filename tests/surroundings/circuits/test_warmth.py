@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of
-from tests.surroundings.circuits.test_circuit import driven, LPM, surplus
+from tests.surroundings.circuits.station import driven, LPM, surplus
 from tests.surroundings.circuits.test_heat import CAPACITY, HOT, HOT_STATION, walther
 
 
