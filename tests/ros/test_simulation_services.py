@@ -106,7 +106,7 @@ def test_names_are_those_of_the_standard_in_the_namespace_of_the_run(standard, o
 
 def test_the_state_is_that_of_the_run(standard):
     assert standard.state == STOPPED
-    standard.run.ticks = 3
+    standard.run.ticks = 1
     assert standard.state == PAUSED
     standard.run.is_paused = False
     assert standard.state == PLAYING

@@ -71,3 +71,16 @@ def test_robots_share_the_section_of_their_run(tmp_path: Path):
     path.write_text('name: pair\nrobots: {r1: {file: leg}, r2: {file: leg}}\n'
                     'publish: {decimate: {/r1/*: 5}}\n')
     assert load_run(path).publish == PublishConfig((('/r1/*', 5),))
+
+
+def test_a_pattern_may_also_fit_topics_that_are_whole(tmp_path: Path):
+    path = with_record(tmp_path, 'publish: {decimate: {"/rotor/*": 5}}\n')
+    session = prepare(Request(config=path, out=tmp_path / 'bag'))
+    assert session.run.publish.decimate == (('/rotor/*', 5),)
+
+
+def test_a_section_in_which_the_files_of_robots_agree_is_that_of_the_run(tmp_path: Path):
+    with_record(tmp_path, 'publish: {decimate: {"*": 3}}\n')
+    path = tmp_path / 'pair.yaml'
+    path.write_text('name: pair\nrobots: {r1: {file: rig.yaml}, r2: {file: rig.yaml}}\n')
+    assert load_run(path).publish == PublishConfig((('*', 3),))
