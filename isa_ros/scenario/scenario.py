@@ -17,6 +17,7 @@ from typing import Any
 from isa_ros.config.runs.controller_config import CONTROLLERS, controllers_at
 from isa_ros.config.runs.low_supply import low_supplies
 from isa_ros.config.runs.run_config import ROBOTS, RunConfig
+from isa_ros.config.runs.supply_settings import defeated_settings
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
 from isa_ros.config.text.names import name_of, parted
@@ -63,7 +64,7 @@ class Scenario:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return lines to print before the run."""
-        of_run = (*low_supplies(self.run), *(
+        of_run = (*low_supplies(self.run), *defeated_settings(self.run), *(
             line for body in self.run.bodies for line in body.warnings(self.run.step_ns)))
         return (*self.limited, *(f'{self.run.source}: {line}' for line in of_run))
 
