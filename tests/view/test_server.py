@@ -106,6 +106,14 @@ def test_other_methods_are_refused_and_without_the_token_at_first(client, method
         assert begin == b'' if method == 'HEAD' else begin in (b'open', b'must')
 
 
+def test_the_answer_to_head_has_no_body(client):
+    name, port = client.host.split(':')
+    with socket.create_connection((name, int(port)), _TIMEOUT) as own:
+        own.sendall(f'HEAD / HTTP/1.1\r\nHost: {client.host}\r\n\r\n'.encode())
+        answer = own.makefile('rb').read()
+    assert answer.startswith(b'HTTP/1.1 403 ') and answer.endswith(b'\r\n\r\n')
+
+
 def test_what_is_no_request_is_refused_without_a_page(client):
     name, port = client.host.split(':')
     with socket.create_connection((name, int(port)), _TIMEOUT) as own:
