@@ -8,6 +8,7 @@ from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LITRE, MILLI, MPA
+from isa_ros.plant.hose import LumpedHoses
 from isa_ros.reu.wiring import active
 from isa_ros.text.table import Cells, digits
 import numpy as np
@@ -17,12 +18,14 @@ Floats = NDArray[np.float64]
 
 SETTLED = 0.02  # of the motion: the usual band about the final value
 END = 0.1       # of the time, in which what has settled is looked at for ripple
+SHOWN = 0.1     # MPa, the last digit of a pressure
 TOUCHES = 1.0   # N: a smaller force of the ground is no contact
 HEADER = ('', 'from', 'to', '', 'speed, 1/s', 'peak force', '', 'pressure, MPa',
           'position error', 'force error', 'settled, s', 'ripple', 'oil, l')
 LANDING_HEADER = ('contact', 'landing, s', 'peak in its direction, N', 'at, s', 'in contact')
 LEGEND = (
-    'speed and peak: greatest magnitudes; pressure: gauge; error: of reference and measurement, '
+    'speed and peak: greatest magnitudes; pressure: gauge, of the sensors at the valve; behind '
+    'hoses also the peak in a chamber where it is higher; error: of reference and measurement, '
     'rms and at most, where a loop has both; settled: within 2 % of the motion; ripple: half of '
     'peak to peak of the force in the last tenth of the time, if settled; oil: drawn from the '
     'supply')
@@ -124,17 +127,38 @@ def _row(signals: Signals, own: ActuatorConfig) -> Sequence[str]:
 
     def of(field: str) -> Floats:
         return signals.drawn(f'{own.name}.{field}').values
-    x, pressures = of('position'), np.concatenate([of('pressure_a'), of('pressure_b')]) / MPA
+    x = of('position')
     oil, settled = of('supply_volume'), _settled(signals, own)
     newton = signals.unit(f'{own.name}.force')
     return (
         own.name, *((f'{x.min() * scale:.1f}', f'{x.max() * scale:.1f}') if len(x) else '--'),
         unit, _peak(of('velocity') * scale), _peak(of('force')), newton,
-        f'{pressures.min():.1f} to {pressures.max():.1f}' if len(pressures) else '-',
+        pressure_range(signals, own),
         _error(signals, own, 'position', scale, unit), _error(signals, own, 'force', 1.0, newton),
         '-' if settled is None else f'{settled:.3f}',
         '-' if settled is None else digits(ripple_at_end(of('force')), 2),
         f'{oil[-1] / LITRE:.3f}' if len(oil) else '-')
+
+
+def pressure_range(signals: Signals, own: ActuatorConfig) -> str:
+    """
+    Return the range of the sensors' pressures in MPa; behind hoses also the peak in a chamber.
+
+    The sensors are at the valve: behind hoses and load-holding valves, which need hoses, a chamber
+    has another pressure. It is given where it was recorded, and is the higher one.
+    """
+    def of(field: str) -> Floats:
+        return np.concatenate([
+            signals.drawn(f'{own.name}.{field}_{side}').values for side in 'ab']) / MPA
+    sensed = of('pressure')
+    if not len(sensed):
+        return '-'
+    text = f'{sensed.min():.1f} to {sensed.max():.1f}'
+    if isinstance(own.sheet.plant.hoses, LumpedHoses):
+        chambers = of('chamber_pressure')
+        if len(chambers) and chambers.max() - sensed.max() >= SHOWN:
+            text += f', chamber {chambers.max():.1f}'
+    return text
 
 
 def ripple_at_end(values: Floats) -> float | None:

@@ -1,9 +1,9 @@
 """Results of a run as a table of text: motion, force, pressure, settling and oil."""
 
-from isa_ros.analysis.report.key_figures import settling_time
+from isa_ros.analysis.report.key_figures import pressure_range, settling_time
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.core.units import LITRE, MILLI, MPA
+from isa_ros.core.units import LITRE, MILLI
 from isa_ros.text.table import aligned, digits
 import numpy as np
 
@@ -26,10 +26,9 @@ def _row(signals: Signals, own: ActuatorConfig) -> tuple[str, ...]:
     t, x = signals.over_time(f'{name}.position')
     scale, unit = (np.degrees(1.0), 'deg') if own.sheet.is_rotary else (1.0 / MILLI, 'mm')
     force = np.abs(signals[f'{name}.force']).max()
-    pressures = np.concatenate([signals[f'{name}.pressure_{side}'] for side in 'ab']) / MPA
     oil = signals[f'{name}.supply_volume'][-1] / LITRE
     settled = settling_time(t, x)
     return (
         name, f'{x.min() * scale:.1f}', f'{x.max() * scale:.1f}', unit, digits(float(force), 3),
-        signals.unit(f'{name}.force'), f'{pressures.min():.1f} to {pressures.max():.1f}',
+        signals.unit(f'{name}.force'), pressure_range(signals, own),
         '-' if settled is None else f'{settled:.3f}', f'{oil:.3f}')
