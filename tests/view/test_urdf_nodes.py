@@ -86,6 +86,7 @@ def test_nodes_are_told_in_json_by_the_places_of_their_channels():
     ('child link="plate"', 'child link="pl"', 'arm: has 2 links'),
     ('radius="0.04"', 'radius="thick"', "arm: link boom: cylinder radius = 'thick', must be fin"),
     (' size="0.5 0.4 0.02"', '', 'link plate: box size = None, must be three numbers'),
+    ('size="0.5 0.4 0.02"', 'size="0.5 0.4 0.02 1"', 'must be three numbers'),
     ('size="0.5 0.4 0.02"', 'size="0.5 0.4"', "link plate: box size = '0.5 0.4', must be three"),
     ('xyz="0.1 0.2 0.3"', 'xyz="0.1 inf 0.3"', 'arm: joint lift: origin xyz = '),
     ('xyz="0 3 4"', 'xyz="0 0 0"', 'arm: joint lift: axis xyz = 0 0 0'),

@@ -152,7 +152,8 @@ def test_what_slopes_leave_over_widens_the_interval() -> None:
 
 
 def test_a_start_that_is_refused_leads_nowhere() -> None:
-    found = _refined(lambda theta: np.full((2, N), np.inf), np.array([1.3]), BOX, LAGS)
+    with np.errstate(all='raise'):      # nothing is computed with them
+        found = _refined(lambda theta: np.full((2, N), np.inf), np.array([1.3]), BOX, LAGS)
     assert found.theta[0] == 1.3 and found.cost == found.half_widths[0] == np.inf
 
 
@@ -165,3 +166,40 @@ def test_instruments_are_slopes_of_other_points() -> None:
         return np.stack([(theta[0] - TRUE) * SWING])
     _refined(machine, np.array([TRUE]), BOX, LAGS)
     assert sorted({round(own / TRUE, 6) for own in seen}) == [0.8, 0.9, 0.98, 1.0, 1.02, 1.1, 1.2]
+
+
+def test_each_machine_is_simulated_once() -> None:
+    seen = []
+
+    def machine(theta: np.ndarray) -> np.ndarray:
+        seen.append(float(theta[0]))
+        return rough(theta)
+    searched(machine, np.array([1.0]), BOX, LAGS)
+    assert len(seen) == len(set(seen)) > 10
+
+
+def test_steps_go_on_until_they_are_small() -> None:
+    """One step ends 7 % beside the truth where the signal grows with the cube."""
+    def cube(theta: np.ndarray) -> np.ndarray:
+        return np.stack([(theta[0] ** 3 - TRUE ** 3) * SWING + noise(8, 0.001)])
+    assert _refined(cube, np.array([2.6]), BOX, LAGS).theta[0] == pytest.approx(TRUE, rel=2e-3)
+
+
+def test_a_step_that_makes_it_worse_is_not_taken() -> None:
+    """The slope far from the truth leads to the other bound, with more left than here."""
+    def flat(theta: np.ndarray) -> np.ndarray:
+        return np.stack([np.arctan(5.0 * (theta[0] - TRUE)) * SWING + noise(9, 0.001)])
+    assert _refined(flat, np.array([3.0]), BOX, LAGS).theta[0] == 3.0
+
+
+def test_a_minimum_that_is_hardly_worse_is_within_the_interval() -> None:
+    """At 1.5 a cosine is left that raises the cost by 0.02, of samples that hang together."""
+    cosine = np.cos(np.linspace(0.0, 60.0, N))
+
+    def two(theta: np.ndarray) -> np.ndarray:
+        x = theta[0]
+        return np.stack([0.1 * (x - 1.0) * (x - 1.5) * SWING + 0.004 * (x - 1.0) * cosine
+                         + noise(3, 0.01)])
+    found = searched(two, np.array([0.95]), BOX, LAGS)
+    assert found.theta[0] < 1.2 and found.half_widths[0] > 0.4
+    assert searched(two, np.array([0.95]), BOX, 0).half_widths[0] < 0.2
