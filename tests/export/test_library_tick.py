@@ -115,12 +115,12 @@ def test_ports_that_no_load_or_supply_has(loaded, given):
 
 def test_feeds_are_finite(loaded):
     instance = Instance(loaded)
-    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, np.nan, 0.0)) == NOT_FINITE
-    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0)) == 0
+    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, np.nan, 0.0, 0.0, 0.0)) == NOT_FINITE
+    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) == 0
     fed = instance.fed.tobytes()
     assert any(fed) and instance.tick(port()) == 0
     assert instance.fed.tobytes() == fed
-    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0)) == 0
+    assert instance.tick(port(), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) == 0
     assert instance.fed.tobytes() != fed
 
 
