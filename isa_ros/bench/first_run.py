@@ -86,6 +86,8 @@ def _unneeded(folder: str, names: list[str]) -> set[str]:
     if Path(folder) == ROOT:
         found.update(name for name in names if name in ('build', 'runs', 'tests', 'docs')
                      or name.endswith('.egg-info'))
+    if Path(folder) == ROOT / 'isa_ros':
+        found.add('kernels')    # they are made anew
     return found
 
 

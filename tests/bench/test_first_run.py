@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+import shutil
 import subprocess
 import sys
 
@@ -36,7 +37,9 @@ def test_a_run_that_fails_says_why(tmp_path):
 
 
 def test_kernels_that_cannot_be_made_say_why(tmp_path):
-    """The checkout has no script that makes them."""
+    """The checkout has no script that makes them; another one may be installed."""
+    (tmp_path / 'scripts').mkdir()
+    (tmp_path / 'scripts' / '__init__.py').touch()
     with pytest.raises(RunError, match='^kernels of the wheel: .*No module named .*scripts'):
         first_run._make_kernels(tmp_path, tmp_path)
 
@@ -67,6 +70,16 @@ def test_the_row_is_the_first_run_over_its_aim(monkeypatch):
     assert len(made) == 1 and made[0].name == 'setup.py'
     assert (host.value, second.value, size.value) == (5.0, 1.5, 1.5)
     assert {part.part_of for part in (host, second, size)} == {row.name}
+
+
+def test_kernels_of_the_checkout_are_left_out(monkeypatch, tmp_path):
+    """A wheel has those that were made for it; folders of that name elsewhere are kept."""
+    for folder in ('isa_ros/kernels', 'isa_ros/core/kernels', 'kernels', 'build', '.venv'):
+        (tmp_path / 'checkout' / folder).mkdir(parents=True)
+    monkeypatch.setattr(first_run, 'ROOT', tmp_path / 'checkout')
+    shutil.copytree(first_run.ROOT, tmp_path / 'copy', ignore=first_run._unneeded)
+    found = {str(path.relative_to(tmp_path / 'copy')) for path in (tmp_path / 'copy').rglob('*')}
+    assert found == {'isa_ros', 'isa_ros/core', 'isa_ros/core/kernels', 'kernels'}
 
 
 @pytest.mark.slow
