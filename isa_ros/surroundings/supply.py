@@ -236,6 +236,11 @@ class Supply:
         """Return the gauge return pressure in Pa, constant over the next tick."""
         return float(self.state['return_pressure'][0])
 
+    @property
+    def pressures(self) -> list[tuple[float, float]]:
+        """Return both pressures of the next tick, of what feeds its actuators: itself."""
+        return [(self.pressure, self.return_pressure)]
+
     def advance(self, drawn: float, returned: float = 0.0, paid: float | None = None) -> None:
         """
         Advance one tick in which the actuators drew and returned these volumes (m3).

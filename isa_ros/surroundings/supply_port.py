@@ -9,7 +9,7 @@ tick with the volumes drawn. Flows into the supply's node are positive. Equation
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol
 
 from isa_ros.core.bound import Rebound
 from isa_ros.core.kernel import kernel_function
@@ -55,19 +55,6 @@ class FedNode(NamedTuple):
     """Slope of the inflow over time at a constant pressure, m3/s2: inertance, lag of a pump."""
 
 
-class PortedSupply(Protocol):
-    """A circuit that has a port; its nodes in the order of what it feeds."""
-
-    def nodes(self) -> list[FedNode]:
-        """Return its nodes at the start of the next tick."""
-        ...
-
-    @property
-    def oil_celsius(self) -> float | None:
-        """Return the temperature of the oil in its tank now; None: its oil has none."""
-        ...
-
-
 @kernel_function
 def fill_feeds(node, rows, last, feeds):
     """
@@ -90,9 +77,8 @@ def fill_feeds(node, rows, last, feeds):
         feed['flow'] = last[row]['flow']
 
 
-@runtime_checkable
 class FeedingSupply(Protocol):
-    """A supply that has a port and fills it by itself."""
+    """A supply or circuit that has a port."""
 
     @property
     def feeding(self) -> Rebound:
@@ -101,16 +87,9 @@ class FeedingSupply(Protocol):
 
 
 class SupplyPorts:
-    """
-    The ports of the supplies of a run that have one, each with the rows that its nodes feed.
+    """The ports of the ``supplies`` of a run that have one; ``n_actuators`` are all its rows."""
 
-    ``n_actuators`` is the number of all rows.
-    """
-
-    def __init__(
-            self, n_actuators: int,
-            supplies: Sequence[tuple[PortedSupply | FeedingSupply, Sequence[Sequence[int]]]],
-            ) -> None:
+    def __init__(self, n_actuators: int, supplies: Sequence[FeedingSupply]) -> None:
         self._supplies = supplies
         self.are_there = bool(supplies)
         """Whether a supply has one."""
@@ -119,27 +98,19 @@ class SupplyPorts:
 
     def fill(self, feeds: Records) -> None:
         """Fill the `SUPPLY_PORT` of the fed actuators for the next tick, (n_actuators,)."""
-        for supply, groups in self._supplies:
-            if isinstance(supply, FeedingSupply):
-                supply.feeding.to(self.answers, feeds).run()
-                continue
-            celsius = supply.oil_celsius
-            for node, rows in zip(supply.nodes(), groups):
-                fill_feeds(node, rows, self.answers, feeds)
-                for row in rows if celsius is not None else ():
-                    feeds['is_warm'][row], feeds['celsius'][row] = 1.0, celsius
+        for supply in self._supplies:
+            supply.feeding.to(self.answers, feeds).run()
 
-    def take(self, fed: Records | None) -> list[float]:
+    def take(self, fed: Records | None) -> bool:
         """
-        Keep the answers of a tick; return the energies that the actuators paid, J.
+        Keep the answers of a tick; return whether the pressures have moved in it.
 
-        Empty where they held the pressures: there are no ports, or they were not used.
+        They were held where there are no ports, or they were not used.
         """
         if fed is None or not self.are_there:
-            return []
+            return False
         self.answers[:] = fed
-        paid: list[float] = fed['paid'].tolist()
-        return paid
+        return True
 
     @property
     def nbytes(self) -> int:

@@ -19,7 +19,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body, BoundBody, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.circuits.circuit import Circuit
 from isa_ros.surroundings.emergency_line import changing_line
-from isa_ros.surroundings.feeding import advance_circuit, made, n_samples, SupplyCircuit
+from isa_ros.surroundings.feeding import made, n_samples, SupplyCircuit
 from isa_ros.surroundings.supply import saved_states, Supply
 from isa_ros.surroundings.supply_port import ANSWER, SupplyPorts
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
@@ -56,9 +56,7 @@ class Surroundings:
             for own, first, last in zip(circuits, ends, ends[1:])]
         self._owners = [own.name for own in circuits for _ in range(n_samples(own.sheet))]
         self._circuits = [own for own in self._supplies if isinstance(own, Circuit)]
-        self._ports = SupplyPorts(len(starts), [
-            (supply, circuit.groups)
-            for supply, circuit in zip(self._supplies, circuits) if supply.has_port])
+        self._ports = SupplyPorts(len(starts), [own for own in self._supplies if own.has_port])
         self.changing: Mapping[str, Changeable] = {
             name: own for circuit in circuits
             for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
@@ -101,10 +99,7 @@ class Surroundings:
         if self._values.latch():
             self._change()
         for supply in self._supplies:
-            if isinstance(supply, Circuit):
-                supply.fill(ports)
-            else:
-                supply.filling.to(ports).run()
+            supply.filling.to(ports).run()
         for body in self.bodies.values():
             body.ports(ports)
 
@@ -119,12 +114,9 @@ class Surroundings:
 
     def _fill_pressures(self, rows: Records) -> None:
         for supply, circuit in zip(self._supplies, self.circuits):
-            if isinstance(supply, Circuit):
-                supply.fill(rows)
-                continue
-            fed = list(circuit.rows)
-            rows['supply_pressure'][fed] = supply.pressure
-            rows['return_pressure'][fed] = supply.return_pressure
+            for fed, (pressure, back) in zip(circuit.groups, supply.pressures):
+                rows['supply_pressure'][list(fed)] = pressure
+                rows['return_pressure'][list(fed)] = back
 
     def tune(self, values: Mapping[str, float]) -> None:
         """
@@ -195,15 +187,19 @@ class Surroundings:
         """
         for body in self.bodies.values():
             body.advance(replies)
-        energies = self._ports.take(fed)
-        for supply, circuit in zip(self._supplies, self.circuits):
-            if isinstance(supply, Circuit):
-                advance_circuit(
-                    supply, circuit.groups, replies, self._ports.answers if energies else None)
-                continue
-            has_moved = supply.has_port and bool(energies)
-            supply.advancing.to(
-                replies, self._ports.answers if has_moved else _NO_ANSWERS).run()
+        have_moved = self._ports.take(fed)
+        for supply in self._supplies:
+            supply.advancing.to(replies, self._answers(supply, have_moved)).run()
+        self._settle()
+
+    def _answers(self, supply: Supply | Circuit, have_moved: bool) -> Records:
+        """Return the answers of a tick to a supply's port; none where it held its pressure."""
+        return self._ports.answers if supply.has_port and have_moved else _NO_ANSWERS
+
+    def _settle(self, found: int = 0) -> None:
+        """End a tick that all supplies have advanced by."""
+        for own in self._circuits:
+            own.settle()
 
     def parts(
             self, ports: Records, feeds: Records, replies: Records, fed: Records
@@ -211,12 +207,12 @@ class Surroundings:
         """
         Return what a compiled loop calls before and after the actuators of a tick.
 
-        The rows are those of `ports`, `fill_feeds` and `advance`, which do the same. None: a
-        circuit or a body is not of kernels.
+        The rows are those of `ports`, `fill_feeds` and `advance`, which do the same. None: a body
+        is not of kernels.
         """
-        supplies = [own for own in self._supplies if isinstance(own, Supply)]
+        supplies = self._supplies
         bodies = [own for own in self.bodies.values() if isinstance(own, BoundBody)]
-        if len(supplies) < len(self._supplies) or len(bodies) < len(self.bodies):
+        if len(bodies) < len(self.bodies):
             return None
         filling = [*(own.filling for own in supplies), *(own.filling for own in bodies)]
         before = [Part(own.to(ports), nothing) for own in filling]
@@ -226,8 +222,10 @@ class Surroundings:
             before += [Part(own.feeding.to(answers, feeds), nothing)
                        for own in supplies if own.has_port]
             after.append(Part(Bound(keep_answers, Answers(fed, answers)), nothing))
-        after += [Part(own.advancing.to(replies, answers if own.has_port else _NO_ANSWERS),
-                       nothing) for own in supplies]
+        after += [Part(own.advancing.to(replies, self._answers(own, True)), nothing)
+                  for own in supplies]
+        after += [Part(own.is_due, self._settle)
+                  for own in self._circuits if own.is_due is not None]
         return before, after
 
     def snapshot(self) -> bytes:

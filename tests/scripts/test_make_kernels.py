@@ -96,7 +96,7 @@ def test_controllers_of_scenarios_ask_for_their_kernels(objects):
 def test_circuits_ask_for_their_kernels(objects):
     """They run, as zeros would be refused."""
     names = {wanted.name for wanted in rehearsed('crane_circuit.yaml', objects)}
-    assert {'advance', 'fill_nodes', 'show_rows'} <= names
+    assert {'advance', 'fill_manifolds', 'fill_pressures', 'show_rows'} <= names
 
 
 def test_objects_of_an_entry(alone, objects):

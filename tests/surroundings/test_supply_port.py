@@ -136,8 +136,10 @@ def test_what_is_paid_is_the_energy_and_the_rest_held() -> None:
 
 def test_ports_that_are_not_used_leave_the_pressures_held() -> None:
     """A caller of actuators that hold their pressure pays it."""
-    ports = SupplyPorts(2, [(Supply(MOVING, MS, 2e-12), [[0, 1]])])
-    assert ports.take(None) == SupplyPorts(2, []).take(None) == []
+    ports, fed = SupplyPorts(2, [Supply(MOVING, MS, 2e-12)]), np.ones(2, SUPPLY_REPLY)
+    assert not ports.take(None) and not SupplyPorts(2, []).take(fed)
+    assert not ports.answers.tobytes().strip(b'\0')
+    assert ports.take(fed) and ports.answers.tobytes() == fed.tobytes()
 
 
 def test_the_key_has_two_kinds() -> None:

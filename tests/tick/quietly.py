@@ -1,10 +1,20 @@
 """Simulations advanced by calls of quiet ticks."""
 
+from collections.abc import Callable
 from itertools import cycle
+from pathlib import Path
 
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.writer import BagWriter
+from isa_ros.run.output import packer_of, RunOutput
+from isa_ros.run.provenance import provenance_of
 from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
 from isa_ros.tick.exchange import Rows, RowSink
+from isa_ros.tick.trips import TripLog
+
+PATTERNS = ((1,), (2,), (3,), (7,), (20,), (100,), (1, 50, 3, 9), (1_000_000,))
+"""Ticks of successive calls."""
 
 
 def advance(simulation: Simulation, n_ticks: int, pattern: tuple[int, ...]) -> int:
@@ -20,6 +30,23 @@ def advance(simulation: Simulation, n_ticks: int, pattern: tuple[int, ...]) -> i
             loop.end()
             return single
     raise AssertionError
+
+
+def bag_of(directory: Path, run: Run, n_ticks: int, pattern: tuple[int, ...],
+           act: Callable[[Simulation], object] = lambda simulation: None
+           ) -> tuple[list[tuple[object, ...]], int]:
+    """Return all messages of the bag of a run, and the number of single ticks."""
+    simulation = run.simulation()
+    act(simulation)
+    config = simulation.scenario.run
+    packer = packer_of(config, simulation.loop.rows.published)
+    with BagWriter(directory, packer.topics, provenance_of(simulation.scenario)) as bag:
+        simulation.loop.sinks = (
+            RunOutput(packer, config.step_ns, bag),
+            TripLog([(own.name, own.sheet.is_rotary) for own in config.actuators]))
+        single = advance(simulation, n_ticks, pattern)
+    return [(own.topic, own.sequence, own.t_ns, own.data)
+            for own in Bag(directory).messages()], single
 
 
 class Counting(RowSink):

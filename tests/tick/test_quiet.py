@@ -1,41 +1,12 @@
 """Quiet ticks in one compiled loop: the bytes are those of single ticks, whatever is in a call."""
 
-from collections.abc import Callable
-from pathlib import Path
-
-from isa_ros.bag.reader import Bag
-from isa_ros.bag.writer import BagWriter
 from isa_ros.errors import SimulationDiverged
-from isa_ros.run.output import packer_of, RunOutput
-from isa_ros.run.provenance import provenance_of
 from isa_ros.scripting.log import LogSink
 from isa_ros.scripting.run import load, Run
-from isa_ros.simulation import Simulation
 from isa_ros.tick.tick_loop import BEFORE_TICKS
-from isa_ros.tick.trips import TripLog
 import numpy as np
 import pytest
-from tests.tick.quietly import advance, begun
-
-PATTERNS = ((1,), (2,), (3,), (7,), (20,), (100,), (1, 50, 3, 9), (1_000_000,))
-"""Ticks of successive calls."""
-
-
-def bag_of(directory: Path, run: Run, n_ticks: int, pattern: tuple[int, ...],
-           act: Callable[[Simulation], object] = lambda simulation: None
-           ) -> tuple[list[tuple[object, ...]], int]:
-    """Return all messages of the bag of a run, and the number of single ticks."""
-    simulation = run.simulation()
-    act(simulation)
-    config = simulation.scenario.run
-    packer = packer_of(config, simulation.loop.rows.published)
-    with BagWriter(directory, packer.topics, provenance_of(simulation.scenario)) as bag:
-        simulation.loop.sinks = (
-            RunOutput(packer, config.step_ns, bag),
-            TripLog([(own.name, own.sheet.is_rotary) for own in config.actuators]))
-        single = advance(simulation, n_ticks, pattern)
-    return [(own.topic, own.sequence, own.t_ns, own.data)
-            for own in Bag(directory).messages()], single
+from tests.tick.quietly import advance, bag_of, begun, PATTERNS
 
 
 @pytest.mark.parametrize(('name', 'scenario', 'n_ticks'), [
@@ -73,12 +44,6 @@ def test_stamps_begin_at_the_time_of_the_run(tmp_path):
     first, _ = bag_of(tmp_path / '1', run, 30, (1,))
     assert bag_of(tmp_path / '2', run, 30, (20,))[0] == first
     assert first[-1][2] == 1_700_000_000_030_000_000
-
-
-def test_a_circuit_is_advanced_tick_by_tick(tmp_path):
-    """It is not of kernels yet."""
-    _, single = bag_of(tmp_path / 'bag', load('pump_station'), 30, (10,))
-    assert single == 30
 
 
 def log_of(run: Run, n_ticks: int, pattern: tuple[int, ...], room: int) -> list[object]:

@@ -7,10 +7,13 @@ then advances over the same interval with the mean flows. Equation E12.
 """
 
 from collections.abc import Sequence
+from functools import cached_property
 
-from isa_ros.core.bound import Bound
+from isa_ros.core.bound import Bound, Rebound
+from isa_ros.core.signals import LOAD_REPLY, SUPPLY_REPLY
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.circuits.fed import Fed, OwnHeat
+from isa_ros.surroundings.circuits import ticking as tick
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.network import WORK_ROWS
 from isa_ros.surroundings.circuits.nodes import gas_volume, node_energy, node_pressure
 from isa_ros.surroundings.circuits.plan import Network, network_of
@@ -18,9 +21,7 @@ from isa_ros.surroundings.circuits.rest import at_rest, of_return
 from isa_ros.surroundings.circuits.rows import rows_of_circuit
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.circuits.stiffness import steps_of
-from isa_ros.surroundings.circuits.ticking import (
-    advance, FED, fill_nodes, Flowing, Ports, show_rows, Shown)
-from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
+from isa_ros.surroundings.circuits.warmth import coldest_oil, no_heat, warmth_of
 from isa_ros.surroundings.supply_port import FedNode
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE, SUPPLY_STATE
 import numpy as np
@@ -46,56 +47,83 @@ class Circuit:
             samples: np.ndarray | None = None, name: str = 'supply') -> None:
         self.has_port = True
         """Whether its pressures move within a tick."""
-        self.fed = tuple(fed)
+        self._fed = tuple(fed)
         self._name, self._step = name, step_ns * 1e-9
         self._sheet, self._warmth = sheet, warmth_of(sheet)
-        network = self._network_of(sheet)
-        self._nodes = [network.node(own.place) for own in fed]
-        self._returns = [network.node(sheet.return_of(own.place)) for own in fed]
-        self._first = rows_of_circuit(sheet, network)
-        self.samples = np.zeros(len(self._first), SUPPLY_SAMPLE) if samples is None else samples
-        self._shown = self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE)))
+        network = self._network = self._network_of(sheet)
+        self._nodes = np.array([network.node(own.place) for own in fed], np.int64)
+        self._returns = np.array(
+            [network.node(sheet.return_of(own.place)) for own in fed], np.int64)
+        first = rows_of_circuit(sheet, network)
+        self.samples = np.zeros(len(first), SUPPLY_SAMPLE) if samples is None else samples
         self._row_of = {name: 1 + k for k, name in enumerate(sheet.by_name)}
-        self._rows = [self._row_of[own.place] for own in fed]
         self.state: NDArray[np.float64] = at_rest(sheet, network)
-        self._network, self._steps = network, 0
-        self._work = np.zeros((WORK_ROWS, len(self.state)))
-        self._rates = np.zeros(len(self.state))
+        self._n_steps = np.zeros(1, np.int64)
         self._held = np.zeros(len(network.nodes))
-        self._flows = np.zeros(len(network.nodes))
-        self._ports = np.zeros((len(fed), FED))
-        self._none = np.zeros(len(network.nodes))
-        self._stored = np.zeros(len(self._first))
-        self._is_return = of_return(sheet, network)
+        self._is_due = np.zeros(1, np.int64)
         self._oil = np.zeros((2, len(network.nodes)))
+        self._stored = np.zeros(len(first))
         self._gas = np.array([gas_volume(node_pressure(*own), *own[1:])
                               for own in self._all_nodes()])
         self._take(sheet)
+        self._bind(first, of_return(sheet, network))
         self._show()
         self._stored[:] = self.samples['stored_energy']
         self._show()
 
+    @property
+    def _steps(self) -> int:
+        """Return the steps of a tick."""
+        return int(self._n_steps[0])
+
     def _take(self, sheet: CircuitSupply) -> None:
-        self._sheet, (network, self._steps) = sheet, self._checked(sheet)
-        amounts = network.nodes['gas']['amount']
-        np.minimum(amounts, self._network.nodes['gas']['amount'], out=amounts)
-        self._network = network
-        self._held[:] = [node_pressure(*own) for own in self._all_nodes()]
-        self._bind()
+        """Take the values of a sheet; the arrays stay where they are."""
+        self._sheet, (network, self._n_steps[0]) = sheet, self._checked(sheet)
+        own, amounts = self._network, network.nodes['gas']['amount']
+        np.minimum(amounts, own.nodes['gas']['amount'], out=amounts)
+        own.nodes[:], own.elements[:] = network.nodes, network.elements
+        self._held[:] = [node_pressure(*node) for node in self._all_nodes()]
         if self._warmth is not None:
             self._warmth.take(sheet, network)
 
-    def _bind(self) -> None:
-        """Bind the kernels of a tick to the memory, of which the network is another one."""
-        flowing = Flowing(
-            self._network.nodes, self._network.elements, self.state, self._rates, self._work,
-            self._held, self._flows, np.array([self._steps]), np.array([self._step]))
-        self._advance = Bound(advance, flowing)
-        self._fill_nodes = Bound(fill_nodes, Ports(
-            flowing, np.array(self._nodes, np.int64), self._ports))
-        self._show_rows = Bound(show_rows, Shown(
-            flowing, self._none, self._first, self._is_return, self._stored, self._gas, self._oil,
-            self._shown))
+    def _bind(self, first: np.ndarray, is_return: np.ndarray) -> None:
+        """Bind the kernels of a tick to the memory."""
+        n, own = len(self._held), self._network
+        flowing = tick.Flowing(
+            own.nodes, own.elements, self.state, np.zeros(len(self.state)),
+            np.zeros((WORK_ROWS, len(self.state))), self._held, np.zeros(n), self._n_steps,
+            np.array([self._step]))
+        self._shown = tick.Shown(
+            flowing, np.zeros(n), first, is_return, self._stored, self._gas, self._oil,
+            self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE))),
+            no_heat() if self._warmth is None else self._warmth.heating)
+        groups = self._groups([own.rows for own in self._fed], [own.heated for own in self._fed])
+        self._ports = np.zeros((len(self._fed), tick.FED))
+        self._fill_nodes = Bound(tick.fill_nodes, tick.Nodes(flowing, groups, self._ports))
+        self._show_rows = Bound(tick.show_rows, self._shown)
+        self.filling = Rebound(tick.fill_pressures, lambda ports: tick.Pressures(
+            self._held, groups, ports))
+        """Of the ports: fills the pressures of its actuators."""
+        self.feeding = Rebound(tick.fill_manifolds, lambda answers, feeds: tick.Feeds(
+            flowing, groups, self._shown.heating.oil, answers, feeds))
+        """Of last answers and ports of its actuators: fills the latter."""
+        self.advancing = Rebound(tick.advance, lambda replies, answers: tick.CircuitTick(
+            self._shown, groups, self._is_due, replies, answers))
+        """Of replies and answers, or none: advances by one tick, which `settle` ends."""
+        self.is_due = None if self._warmth is None else Bound(
+            tick.is_due, tick.Due(self._is_due))
+        """What returns 1 where `settle` has something to do; None: it never has."""
+
+    def _groups(self, rows: Sequence[Sequence[int]], heated: Sequence[Sequence[int]]
+                ) -> tick.Groups:
+        """Return the actuators of its manifolds by their rows, and which warm up themselves."""
+        return tick.Groups(
+            self._nodes, self._returns,
+            np.array([self._row_of[own.place] for own in self._fed], np.int64),
+            np.array([row for of_one in rows for row in of_one], np.int64),
+            np.array([row in own for of_one, own in zip(rows, heated) for row in of_one],
+                     np.bool_),
+            np.cumsum([0, *map(len, rows)], dtype=np.int64))
 
     def _all_nodes(self) -> list[tuple[float, float, np.record]]:
         """Return content, temperature and record of every node."""
@@ -107,8 +135,8 @@ class Circuit:
         stiffest = network_of(sheet, coldest_oil(sheet, self._warmth))
         steps = steps_of(sheet, stiffest, self._step, self._name)
         if self._warmth is not None:
-            self._warmth.refuse_cold(sheet, max(own.coldest for own in self.fed), self._name)
-        for own, node in zip(self.fed, self._nodes):
+            self._warmth.refuse_cold(sheet, max(own.coldest for own in self._fed), self._name)
+        for own, node in zip(self._fed, self._nodes):
             own.refuse_small(stiffest.nodes[node], self._name)
         return stiffest if self._warmth is None else self._network_of(sheet), steps
 
@@ -134,12 +162,11 @@ class Circuit:
             self.state[3 * n + k] += node_energy(*own) - energy + (p_held - own[2].p_held) * own[0]
         self._show()
 
-    def fill(self, rows: np.ndarray) -> None:
-        """Fill both pressures of the fed actuators, of all rows of a run, for the next tick."""
-        for own, node, back in zip(self.fed, self._nodes, self._returns):
-            for row in own.rows:
-                rows['supply_pressure'][row] = self._held[node]
-                rows['return_pressure'][row] = self._held[back]
+    def settle(self) -> None:
+        """End a tick after which the oil has the properties of another temperature."""
+        if self._is_due[0]:
+            self._is_due[0] = 0
+            self.change(self._sheet)
 
     @property
     def pressures(self) -> list[tuple[float, float]]:
@@ -147,80 +174,46 @@ class Circuit:
         return [(float(self._held[node]), float(self._held[back]))
                 for node, back in zip(self._nodes, self._returns)]
 
-    @property
-    def oil_celsius(self) -> float | None:
-        """Return the temperature of the oil in its tank now; None: its oil has none."""
-        return None if self._warmth is None else float(self._warmth.oil.celsius)
-
     def nodes(self) -> list[FedNode]:
         """Return the manifolds that feed actuators at the start of the next tick."""
         self._fill_nodes.run()
         return [FedNode(*own) for own in self._ports.tolist()]
 
     def advance_nodes(
-            self, drawn: Sequence[float], paid: Sequence[float], returned: Sequence[float],
-            heated: Sequence[OwnHeat] = ()) -> None:
+            self, drawn: Sequence[float], paid: Sequence[float] | None,
+            returned: Sequence[float]) -> None:
         """
         Advance by one tick in which these volumes were drawn at its nodes, m3.
 
         ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
-        the tick. ``returned`` are the volumes given to the return, m3, and ``heated`` has of each
-        node what its actuators with a temperature of their own did.
+        the tick; None: they paid the pressures of its start. ``returned`` are the volumes given
+        to the return, m3.
         """
-        flows = self._flows
-        flows[:] = 0.0
-        for node, back, volume, given in zip(self._nodes, self._returns, drawn, returned):
-            flows[node] += volume / self._step
-            flows[back] -= given / self._step
-        n = len(self._network.nodes)
-        self.state[2 * n:3 * n] = 0.0
-        self._advance.run()
-        taken, carried = self._account(drawn, paid, returned), 0.0
-        for own, back in zip(heated, self._returns):
-            taken -= own.paid - float(self._held[back]) * own.returned
-            carried += own.heat
-        self._held[:] = self._work[0, :n]
-        if self._warmth is not None and self._warmth.advance(
-                self._step, taken, carried, self.state, self._network):
-            self.change(self._sheet)
-            return
-        self._show()
+        replies, answers, held, moved = self._alone
+        replies['supply_volume'], replies['return_volume'] = drawn, returned
+        if paid is None:
+            held.run()
+        else:
+            answers['paid'] = paid
+            moved.run()
+        self.settle()
 
     def advance_held(self, drawn: Sequence[float], returned: Sequence[float]) -> None:
         """Advance by one tick over which the actuators paid the pressures of its start."""
-        self.advance_nodes(
-            drawn, [self._held[node] * volume for node, volume in zip(self._nodes, drawn)],
-            returned)
+        self.advance_nodes(drawn, None, returned)
 
-    def _account(
-            self, drawn: Sequence[float], paid: Sequence[float],
-            returned: Sequence[float]) -> float:
-        """Add oil and energy of the actuators to manifolds and the whole; return the energy."""
-        n = len(self._network.nodes)
-        means = self.state[2 * n:3 * n] / self._step
-        whole, total = self.samples[0], 0.0
-        for k, row in enumerate(self._rows):
-            own, back = self.samples[row], self._returns[k]
-            energy = paid[k] - float(self._held[back]) * returned[k]
-            given = means[self._nodes[k]] * drawn[k] - means[back] * returned[k]
-            total += energy
-            own['power'] = energy / self._step
-            own['peak_power'] = max(own['peak_power'], own['power'])
-            self._oil[0, self._nodes[k]] += drawn[k]
-            self._oil[1, back] += returned[k]
-            whole['drawn'] += drawn[k]
-            whole['returned'] += returned[k]
-            for sample in (own, whole):
-                sample['energy'] += energy
-                sample['held_energy'] += energy - given
-        whole['power'] = total / self._step
-        whole['peak_power'] = max(whole['peak_power'], whole['power'])
-        return total
+    @cached_property
+    def _alone(self) -> tuple[np.ndarray, np.ndarray, Bound, Bound]:
+        """Return a row for each node, and what advances with them, held or paid."""
+        n = len(self._fed)
+        replies, answers = np.zeros(n, LOAD_REPLY), np.zeros(n, SUPPLY_REPLY)
+        groups = self._groups([[k] for k in range(n)], [()] * n)
+        held, moved = (Bound(tick.advance, tick.CircuitTick(
+            self._shown, groups, self._is_due, replies, own)) for own in (answers[:0], answers))
+        return replies, answers, held, moved
 
     def _show(self) -> None:
         self._show_rows.run()
-        if self._warmth is not None:
-            self._warmth.show(self._row_of, self.samples)
 
     @property
     def _heat_at(self) -> int:

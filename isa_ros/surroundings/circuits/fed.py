@@ -1,4 +1,4 @@
-"""The manifolds of a circuit that feed actuators, and what those do there in a tick."""
+"""The manifolds of a circuit that feed actuators."""
 
 import math
 from typing import NamedTuple
@@ -38,14 +38,3 @@ class Fed(NamedTuple):
                 f'{name}: parts.{self.place}: capacity over flow slope of its actuators = '
                 f'{holds * 1e3:.3g} ms, must be >= {bound * 1e3:.3g} ms (four plant steps); '
                 'enlarge its oil_volume_l')
-
-
-class OwnHeat(NamedTuple):
-    """What actuators with a temperature of their own at a node did in a tick."""
-
-    paid: float
-    """Energy of the oil that they drew, J."""
-    returned: float
-    """Oil that they returned, m3."""
-    heat: float
-    """That their oil took along, J  (T10)."""

@@ -26,13 +26,30 @@ COLDEST, WARMEST = -60.0, 5000.0    # celsius: no sheet begins so, and no run en
 _PERCENT = 0.01
 
 
-class Shares(NamedTuple):
-    """What of the losses of each element heats the oil, (m,) each."""
+class Heating(NamedTuple):
+    """Memory of the oil's temperature in a circuit of m elements; no rows where it is constant."""
 
+    oil: np.ndarray
+    """`OIL_STATE`, (1,) or (0,)."""
+    given: np.ndarray
+    """Heat through the walls of the tank and by each cooler since t = 0, J, (k,)."""
+    ways: np.ndarray
+    """As `ways_of`, (k, 2)."""
+    rows: np.ndarray
+    """Of the samples of the tank and its coolers, int64, (k,)."""
+    numbers: np.ndarray
+    """Heat capacity, J/K; share of what the actuators took; `STEP`, K; (3,)."""
     lost: np.ndarray
     """Of its `lost_power`: 1; of a pump 1 - 1/eta, whose lost power is < 0; 0 to the outside."""
     leaked: np.ndarray
-    """Of the power of a pump's leakage: 1/eta; 0 of all else."""
+    """Of the power of a pump's leakage: 1/eta; 0 of all else, (m,)."""
+
+
+def no_heat() -> Heating:
+    """Return the memory of a circuit whose oil is as warm as it is."""
+    none = np.zeros(0)
+    return Heating(np.zeros(0, OIL_STATE), none, np.zeros((0, 2)), np.zeros(0, np.int64),
+                   np.zeros(3), none, none)
 
 
 @kernel
@@ -59,28 +76,67 @@ def heat_of_leakage(step, state, elements, n, leaked):
     return total
 
 
-class Warmth:
+@kernel
+def warm(step, taken, carried, state, nodes, elements, own):
     """
-    The temperature of the oil of a circuit whose tank has a heat.
+    Advance the temperature of a `Heating` by a tick of ``step`` s that ends with this state.
 
-    ``names`` are the tank and its coolers, in the order of ``given``.
+    ``taken`` is the energy that the actuators took, J, but for those that have a temperature of
+    their own, from which the oil ``carried`` heat (T10). Return whether the oil's properties are
+    those of another temperature now.
     """
+    if len(own.oil) == 0:
+        return False
+    oil, numbers = own.oil[0], own.numbers
+    until_now = heat_until_now(state, nodes, elements, own.lost)
+    heat = (until_now - oil.booked + numbers[1] * taken
+            + heat_of_leakage(step, state, elements, len(nodes), own.leaked) + carried)
+    oil.booked = until_now
+    warm_oil(step, heat, numbers[0], own.ways, oil, own.given)
+    if abs(oil.celsius - oil.taken) < numbers[2]:
+        return False
+    oil.taken = oil.celsius
+    return True
+
+
+@kernel
+def show_warmth(own, samples):
+    """Write temperature and heat of the whole, the tank and its coolers to their samples."""
+    if len(own.oil) == 0:
+        return
+    oil = own.oil[0]
+    samples[0].oil_temperature, samples[0].heat = oil.celsius, oil.got
+    for k in range(len(own.rows)):
+        sample = samples[own.rows[k]]
+        sample.oil_temperature, sample.heat = oil.celsius, own.given[k]
+
+
+class Warmth:
+    """The temperature of the oil of a circuit whose tank has a heat."""
 
     def __init__(self, sheet: CircuitSupply, heat: MixedHeat) -> None:
-        self.oil: np.record = np.zeros(1, OIL_STATE).view(np.recarray)[0]
+        names = sheet.tank, *_coolers(sheet)
+        places = list(sheet.by_name)
+        n = len(names)
+        self.heating = no_heat()._replace(
+            oil=np.zeros(1, OIL_STATE), given=np.zeros(n), ways=np.zeros((n, 2)),
+            rows=np.array([1 + places.index(name) for name in names], np.int64))
+        """Its memory; what `take` changes is changed in place, once it is there."""
+        self.oil: np.record = self.heating.oil.view(np.recarray)[0]
         """`OIL_STATE`."""
         self.oil.celsius = self.oil.taken = heat.start_celsius
-        self.names = (sheet.tank, *_coolers(sheet))
-        self.given = np.zeros(len(self.names))
-        """Heat through the walls of the tank and by each cooler since t = 0, J."""
-        self._heat, self._ways = heat, np.zeros((0, 2))
-        self._shares = Shares(np.zeros(0), np.zeros(0))
 
     def take(self, sheet: CircuitSupply, network: Network) -> None:
         """Continue with values of a sheet, at the temperature that the oil has."""
         assert isinstance(sheet.heat, MixedHeat)
-        self._heat, self._ways = sheet.heat, ways_of(sheet.heat, list(_coolers(sheet).values()))
-        self._shares = _shares(sheet, network)
+        n = len(network.elements)
+        if len(self.heating.lost) < n:
+            self.heating = self.heating._replace(lost=np.zeros(n), leaked=np.zeros(n))
+        own = self.heating
+        own.ways[:] = ways_of(sheet.heat, list(_coolers(sheet).values()))
+        own.numbers[:] = (
+            heat_capacity(sheet.heat), _PERCENT * sheet.heat.actuators_percent, STEP)
+        own.lost[:], own.leaked[:] = _shares(sheet, network)
 
     def oil_now(self, sheet: CircuitSupply) -> OilNow:
         """Return the oil at the temperature that viscosity and compressibility have."""
@@ -104,38 +160,9 @@ class Warmth:
                 f'coolants, must be >= {least:.3g} celsius: the friction of an actuator that it '
                 f'feeds is too fast for the plant step of {PLANT_STEP_NS / 1e3:g} us')
 
-    def advance(
-            self, step: float, taken: float, carried: float, state: np.ndarray,
-            network: Network) -> bool:
-        """
-        Advance by a tick of ``step`` s after which the circuit has this state.
-
-        ``taken`` is the energy that the actuators took, J, but for those that have a temperature
-        of their own, from which the oil ``carried`` heat (T10). Return whether the oil's
-        properties are those of another temperature now.
-        """
-        nodes, elements = network.nodes, network.elements
-        until_now = heat_until_now(state, nodes, elements, self._shares.lost)
-        heat = (until_now - self.oil.booked + _PERCENT * self._heat.actuators_percent * taken
-                + heat_of_leakage(step, state, elements, len(nodes), self._shares.leaked)
-                + carried)
-        self.oil.booked = until_now
-        warm_oil(step, heat, heat_capacity(self._heat), self._ways, self.oil, self.given)
-        if abs(self.oil.celsius - self.oil.taken) < STEP:
-            return False
-        self.oil.taken = self.oil.celsius
-        return True
-
-    def show(self, rows: dict[str, int], samples: np.ndarray) -> None:
-        """Write temperature and heat of the whole, the tank and its coolers to their rows."""
-        samples[0]['oil_temperature'], samples[0]['heat'] = self.oil.celsius, self.oil.got
-        for name, given in zip(self.names, self.given):
-            samples[rows[name]]['oil_temperature'] = self.oil.celsius
-            samples[rows[name]]['heat'] = given
-
     def snapshot(self) -> bytes:
         """Return its state."""
-        return self.oil.tobytes() + self.given.tobytes()
+        return self.oil.tobytes() + self.heating.given.tobytes()
 
     def can_be(self, numbers: np.ndarray) -> bool:
         """Return whether numbers are those of a `snapshot`: both temperatures of oil."""
@@ -145,7 +172,7 @@ class Warmth:
         """Continue from the numbers of a `snapshot`."""
         for name, value in zip(OIL_STATE.names or (), numbers):
             self.oil[name] = value
-        self.given[:] = numbers[len(OIL_STATE.names or ()):]
+        self.heating.given[:] = numbers[len(OIL_STATE.names or ()):]
 
 
 def warmth_of(sheet: CircuitSupply) -> Warmth | None:
@@ -173,8 +200,8 @@ def _coolers(sheet: CircuitSupply) -> dict[str, CoolerPart]:
     return {name: part for name, part in sheet.by_name.items() if isinstance(part, CoolerPart)}
 
 
-def _shares(sheet: CircuitSupply, network: Network) -> Shares:
-    """Return what of the losses of each element heats the oil  (T8)."""
+def _shares(sheet: CircuitSupply, network: Network) -> tuple[np.ndarray, np.ndarray]:
+    """Return what of the losses of each element heats the oil, as in a `Heating`  (T8)."""
     lost = np.array([float(element['outlet'] != OUTSIDE) for element in network.elements])
     leaked = np.zeros(len(lost))
     for j, (owner, element) in enumerate(zip(network.owners, network.elements)):
@@ -183,4 +210,4 @@ def _shares(sheet: CircuitSupply, network: Network) -> Shares:
             assert isinstance(part, PumpPart)
             leaked[j] = 1.0 / (_PERCENT * part.efficiency_percent)
             lost[j] = 1.0 - leaked[j]
-    return Shares(lost, leaked)
+    return lost, leaked

@@ -1,11 +1,13 @@
 """Nodes: content and pressure are inverse, missing oil is a cavity."""
 
 from isa_ros.core.signals import LOAD_PORT
+from isa_ros.surroundings.circuits.circuit import Circuit
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.nodes import (
     node_capacity, node_content, node_energy, node_pressure, phase_of, temperature_with, VAPOUR)
 import numpy as np
 import pytest
-from tests.surroundings.circuits.sheets import Bench, circuit_of, SIMPLE
+from tests.surroundings.circuits.sheets import Bench, circuit_of, MS, sheet_of, SIMPLE, SLOPE
 from tests.surroundings.circuits.station import surplus
 
 BUFFER = 'buffer: {kind: accumulator, at: main, gas_volume_l: 1.0, precharge_mpa: 10.0}\n'
@@ -120,11 +122,11 @@ def test_actuators_have_the_return_pressure_of_their_tick_s_start() -> None:
     text = SIMPLE.replace('oil_volume_l: 0.5', 'oil_volume_l: 0.5, returns_to: back') + (
         'back: {kind: manifold, oil_volume_l: 0.2}\n'
         'filter: {kind: filter, inlet: back, outlet: tank, lpm_per_mpa: 60.0}\n')
-    circuit, rows = circuit_of(text, 'main'), np.zeros(1, LOAD_PORT)
-    circuit.fed = (circuit.fed[0]._replace(rows=(0,)),)
+    circuit = Circuit(sheet_of(text), MS, [Fed('main', SLOPE, rows=(0,))])
+    rows = np.zeros(1, LOAD_PORT)
     held = []
     for _ in range(3):
-        circuit.fill(rows)
+        circuit.filling.to(rows).run()
         held.append(float(rows['return_pressure'][0]))
         before = circuit.samples[0]['energy']
         circuit.advance_nodes([0.0], [0.0], [2e-7])

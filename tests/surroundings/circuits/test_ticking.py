@@ -51,7 +51,7 @@ def test_a_tick_is_that_many_steps_with_the_mean_flows():
 
 
 def test_a_change_takes_effect_at_once():
-    """The network is another one, and what shows and advances it too."""
+    """In what shows and advances it too."""
     circuit = moved()
     before, shown = circuit.nodes(), circuit.samples['pump_flow'].copy()
     circuit.change(sheet_of(STATION.replace(

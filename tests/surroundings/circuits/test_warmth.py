@@ -2,16 +2,17 @@
 
 import math
 
+from isa_ros.core.signals import LOAD_REPLY, SUPPLY_REPLY
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.surroundings.circuits import warmth
 from isa_ros.surroundings.circuits.circuit import Circuit
-from isa_ros.surroundings.circuits.fed import Fed, OwnHeat
+from isa_ros.surroundings.circuits.fed import Fed
 from isa_ros.surroundings.circuits.heat import MixedHeat
 from isa_ros.surroundings.circuits.warmth import STEP
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of
+from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of, SLOPE
 from tests.surroundings.circuits.station import driven, LPM, surplus
 from tests.surroundings.circuits.test_heat import CAPACITY, HOT, HOT_STATION, walther
 
@@ -110,17 +111,26 @@ def test_the_heat_is_that_of_losses_shafts_and_actuators() -> None:
 
 def test_heat_of_actuators_takes_the_place_of_their_energy() -> None:
     """T10: of those with a temperature of their own, at two manifolds; s of the others' E1."""
-    plain, own = (circuit_of(HOT_STATION, 'left', 'right') for _ in range(2))
+    plain = circuit_of(HOT_STATION, 'left', 'right')
+    own = Circuit(sheet_of(HOT_STATION), MS, [
+        Fed('left', SLOPE, rows=(0, 1), heated=(0,)),
+        Fed('right', SLOPE, rows=(2, 3), heated=(2,))])
     backs = [back for _, back in plain.pressures]
-    oil = [2e-6, 3e-6], [30.0, 50.0], [1e-6, 1.5e-6]
-    plain.advance_nodes(*oil)
-    own.advance_nodes(*oil, [OwnHeat(12.0, 4e-7, 7.0), OwnHeat(21.0, 6e-7, -3.0)])
+    plain.advance_nodes([2e-6, 3e-6], [30.0, 50.0], [1e-6, 1.5e-6])
+    replies, answers = np.zeros(4, LOAD_REPLY), np.zeros(4, SUPPLY_REPLY)
+    replies['supply_volume'] = 0.5e-6, 1.5e-6, 1e-6, 2e-6
+    replies['return_volume'] = 4e-7, 6e-7, 6e-7, 9e-7
+    answers['paid'] = 12.0, 18.0, 21.0, 29.0
+    answers['heat'] = 7.0, 100.0, -3.0, 200.0     # of others it is not asked for
+    own.advancing.to(replies, answers).run()
+    own.settle()
     heat = plain._sheet.heat
     assert isinstance(heat, MixedHeat)
     taken = 12.0 + 21.0 - backs[0] * 4e-7 - backs[1] * 6e-7
     assert float(own.samples[0]['heat'] - plain.samples[0]['heat']) == pytest.approx(
         7.0 - 3.0 - 0.01 * heat.actuators_percent * taken, rel=1e-9)
-    assert own.samples[0]['energy'] == plain.samples[0]['energy']
+    for name in ('energy', 'drawn', 'returned'):
+        assert own.samples[0][name] == pytest.approx(plain.samples[0][name], rel=1e-12, abs=0.0)
 
 
 def test_what_leaks_to_the_outside_takes_its_heat_along() -> None:
