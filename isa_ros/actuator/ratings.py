@@ -2,6 +2,7 @@
 
 import math
 
+from isa_ros.core.oil_properties import thickness
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MICRO, MILLI
@@ -9,6 +10,7 @@ from isa_ros.plant.hose import largest_resistance
 from isa_ros.plant.hysteresis import widest_play
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
+from isa_ros.plant.thermal import coldest
 from isa_ros.reu.block import Pid
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
@@ -106,8 +108,8 @@ def evidence_of(
     """
     Return the `EVIDENCE` record of a `PLANT` record and its REU.
 
-    The sensors read hoses: their drop is like friction, and behind a load-holding valve they say
-    nothing about the force.
+    The sensors read hoses: their drop is like friction, with seals and oil of a thermal actuator
+    at its coldest, and behind a load-holding valve they say nothing about the force.
     """
     steps, oil, ends = loop_steps(reu), plant.chambers, own_ends(plant)
     stiction, viscous = plant.friction.stiction, plant.friction.sigma2
@@ -115,8 +117,10 @@ def evidence_of(
         stiction = _ANY
     elif plant.hoses.is_on:
         flow = ratings_of(plant).speed * max(oil.area_a, oil.area_b)
-        viscous += (oil.area_a * oil.area_a + oil.area_b * oil.area_b) * largest_resistance(
-            plant.hoses, flow)
+        thicker = _thickest(plant.thermal)
+        viscous = thicker * viscous + (
+            oil.area_a * oil.area_a + oil.area_b * oil.area_b) * largest_resistance(
+                plant.hoses, flow, thicker)
     return record(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
         end_a=ends[0], end_b=ends[1],
@@ -125,6 +129,11 @@ def evidence_of(
         inertia=plant.mechanics.inertia,
         speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
         valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
+
+
+def _thickest(thermal: np.record) -> float:
+    """Return the largest viscosity of the oil over that of the sheet, at least 1  (T1)."""
+    return max(1.0, float(thickness(coldest(thermal), thermal.oil))) if thermal.is_on else 1.0
 
 
 def supervision_of(

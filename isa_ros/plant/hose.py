@@ -207,9 +207,10 @@ def hoses_record(sheet: NoneHoses | LumpedHoses, oil: np.record) -> np.record:
     return own
 
 
-def largest_resistance(hoses: np.record, flow: float) -> float:
-    """Return the drop over its flow (Pa s/m3) at a flow in m3/s, the largest up to there."""
-    smooth = hoses.laminar if flow <= hoses.critical else hoses.linear + hoses.square * flow
+def largest_resistance(hoses: np.record, flow: float, thicker: float = 1.0) -> float:
+    """Return drop over flow (Pa s/m3) at a flow in m3/s, the largest up to there  (C41)."""
+    smooth = (hoses.laminar * thicker if flow <= hoses.critical * thicker
+              else hoses.linear * thicker + hoses.square * flow)
     return float(smooth + hoses.fittings * flow)
 
 
