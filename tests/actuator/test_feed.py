@@ -191,7 +191,7 @@ def test_equal_actuators_and_their_supply_agree_about_its_pressure() -> None:
     line = {'precharge_mpa': 60.0, 'line_volume_l': 0.05}    # no gas at these pressures
     supply = Supply(replace(SHEET, port=MovingPort(), **line), MS, 1e-12, rows=(0, 1, 2))
     actuators = [actuator_of() for _ in range(3)]
-    ports = SupplyPorts(3, [(supply, [[0, 1, 2]])])
+    ports = SupplyPorts(3, [supply])
     feeds, replies, fed = (np.zeros(3, of) for of in (SUPPLY_PORT, LOAD_REPLY, SUPPLY_REPLY))
     for own in actuators:
         own.restore(opened(TICK)[1])
@@ -202,7 +202,8 @@ def test_equal_actuators_and_their_supply_agree_about_its_pressure() -> None:
             own.memory.feeds[0] = feeds[k]
             own.tick(port_of(before))
             replies[k], fed[k] = own.reply, own.memory.fed[0]
-        supply.advance(float(np.sum(replies['supply_volume'])), 0.0, sum(ports.take(fed)))
+        assert ports.take(fed)
+        supply.advance(float(np.sum(replies['supply_volume'])), 0.0, float(np.sum(fed['paid'])))
         assert before - supply.pressure > 0.5e6
         if tick > 0:    # at first the pump stands, and its set point is the pressure
             assert pressure_of(actuators[0]) == pytest.approx(supply.pressure, rel=0.0, abs=600.0)
