@@ -51,13 +51,13 @@ def kernels_alone(simulation: Simulation, n_ticks: int) -> Callable[[], None]:
     Raises
     ------
     RunError
-        A supply or a body of the simulation is not of kernels.
+        A body of the simulation is not of kernels.
 
     """
     group, rows = simulation.group, simulation.loop.rows
     parts = simulation.surroundings.parts(rows.ports, rows.feeds, rows.replies, rows.fed)
     if parts is None:
-        raise RunError(f'{simulation.scenario.run.name}: a supply or a body is not of kernels')
+        raise RunError(f'{simulation.scenario.run.name}: a body is not of kernels')
     before, after = parts
     tick = [*before, Part(group.tick, group.refuse), *after]
     program = Program([part.bound for part in tick])

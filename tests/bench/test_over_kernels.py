@@ -14,6 +14,7 @@ from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
 from tests.bench.artificial import ran
+from tests.surroundings.mass_on_spring import MassOnSpring
 
 TIMES = {'a tick': 90e-6, 'kernels': 60e-6, 'kernels of quiet ticks': 54e-6,
          'what keeps their rows': 10e-6, 'ticks in Python': 20e-6}
@@ -124,9 +125,13 @@ def test_parts_of_a_tick_are_those_of_its_two_kinds(monkeypatch):
 
 
 def test_what_is_not_of_kernels_has_no_floor():
-    simulation = Simulation(load('crane_circuit').scenario)
-    with pytest.raises(RunError, match='crane_circuit: a supply or a body is not of kernels'):
-        kernels_alone(simulation, 1)
+    ram = {'model': 'isa_v5'}
+    run = load({'name': 'pair', 'supply': {
+        'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0},
+        'body': {'kind': 'external', 'actuators': ['left', 'right']},
+        'actuators': {'left': ram, 'right': ram}})
+    with pytest.raises(RunError, match='^pair: a body is not of kernels$'):
+        kernels_alone(run.simulation(body=MassOnSpring), 1)
 
 
 def test_sinks_keep_the_rows_of_now_in_stretches_like_those_of_a_run(monkeypatch):

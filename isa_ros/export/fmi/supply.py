@@ -12,6 +12,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import Chosen
 from isa_ros.export.exported import Called
 from isa_ros.export.layout import MemoryLayout
+from isa_ros.surroundings.circuits.sheet import CircuitSupply
 from isa_ros.surroundings.supply_tick import Answers
 import numpy as np
 
@@ -58,15 +59,16 @@ def supplied(chosen: Chosen) -> Supplied:
 
     """
     run, config = _alone(chosen)
-    surroundings = surroundings_of(run)
-    ports, feeds, replies, fed = (
-        np.zeros(1, record) for record in (LOAD_PORT, SUPPLY_PORT, LOAD_REPLY, SUPPLY_REPLY))
-    parts = surroundings.parts(ports, feeds, replies, fed)
-    if parts is None:
+    if isinstance(config.sheet, CircuitSupply):
         raise ConfigError(
             f'{chosen.config.name}: its supply {config.name} is a circuit, must be constant or a '
             'pump with an accumulator for a unit (--fmu); a library (--c) takes its pressures '
             'from outside')
+    surroundings = surroundings_of(run)
+    ports, feeds, replies, fed = (
+        np.zeros(1, record) for record in (LOAD_PORT, SUPPLY_PORT, LOAD_REPLY, SUPPLY_REPLY))
+    parts = surroundings.parts(ports, feeds, replies, fed)
+    assert parts is not None    # it has no body
     before, after = (tuple(Called(part.bound.function, part.bound.memory) for part in side)
                      for side in parts)
     return Supplied(config, surroundings.supplies[:1], ports, feeds, replies, fed,
