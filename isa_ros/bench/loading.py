@@ -45,9 +45,11 @@ def main(arguments: Sequence[str]) -> None:
         from isa_ros.bench.host import memory_of
         print(json.dumps((imported, memory_of(os.getpid()).resident)))
         return
-    from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
-    from isa_ros.nodes.actuator import process as actuator_process  # noqa: F401
-    from isa_ros.actuator.actuator import SmartActuator
+    from isa_ros.processes.ending import uncollected
+    with uncollected():     # as its program
+        from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+        from isa_ros.nodes.actuator import process as actuator_process  # noqa: F401
+        from isa_ros.actuator.actuator import SmartActuator
     imported = time.monotonic()
     SmartActuator(default_actuator('isa_v5', 'isa_v5'), DEFAULT_TIMING).tick()
     ticked = time.monotonic()

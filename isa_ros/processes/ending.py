@@ -4,7 +4,7 @@ The end of a program: its exit code, and one line about an error.
 Importing this module takes neither numba nor ROS: the programs use it before anything else.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 import contextlib
 import errno
 import gc
@@ -43,7 +43,7 @@ def run_program(
 
     While it is loaded nothing has begun that must be finished: a signal ends the process at once,
     with exit code ``interrupted``. An exception instead could be swallowed by an imported library.
-    Nothing is collected meanwhile: looking through what imports make is a seventh of their time.
+    Nothing is collected meanwhile (`uncollected`).
     """
     def end_at_once(number: int, frame: FrameType | None) -> NoReturn:
         if interrupted:
@@ -53,11 +53,10 @@ def run_program(
 
     try:
         before = replaced_handlers(end_at_once)
-        gc.disable()
         try:
-            run = load()
+            with uncollected():
+                run = load()
         finally:
-            gc.enable()
             for number, handler in before.items():
                 signal.signal(number, handler)
         sys.unraisablehook = _not_raised
@@ -68,6 +67,22 @@ def run_program(
     if code == INTERRUPTED:
         _exit(code)
     return code
+
+
+@contextlib.contextmanager
+def uncollected() -> Iterator[None]:
+    """
+    Load what stays until the process ends, and leave it out of all garbage collection.
+
+    Looking through what imports make is a seventh of their time, and once more just after them,
+    30 ms.
+    """
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def _not_raised(ignored: 'sys.UnraisableHookArgs') -> None:
