@@ -202,8 +202,18 @@ def test_oil_that_may_get_too_cold_for_an_actuator_is_refused() -> None:
     simulation.surroundings.tune({'station.parts.cooler.coolant_celsius': -12.0})
 
 
+@pytest.mark.parametrize('name', ['moved', 'held'])
+def test_the_load_of_each_actuator_counts(name: str) -> None:
+    """50 g bear no friction of -27.5 celsius: -27.1 is its bound, whichever actuator it is."""
+    cold(-27.5)()
+    with pytest.raises(ConfigError, match=r'as cold as -27\.5 .*, must be >= -27\.1 celsius'):
+        Simulation(load('warm_stand', 'warm_stand', changes={
+            'supplies.station.parts.tank.heat.air_celsius': -27.5,
+            f'actuators.{name}.load': {'kind': 'mass', 'inertia': 0.05}}).scenario)
+
+
 def test_a_supply_s_temperature_is_refused_on_a_warm_tank(tmp_path: Path) -> None:
-    """And on another supply it is not."""
+    """Of whichever actuator, and on another supply or a circuit without heat it is not."""
     text = find('warm_stand', CONFIG).read_text(encoding='utf-8').replace(
         'start_celsius: 15.0, ambient', 'start_celsius: 15.0, supply_celsius: 41.0, ambient', 1)
     path = tmp_path / 'own.yaml'
@@ -213,6 +223,13 @@ def test_a_supply_s_temperature_is_refused_on_a_warm_tank(tmp_path: Path) -> Non
     assert str(error.value) == (
         'own.yaml: actuators.moved.parameters.plant.thermal.supply_celsius is not used: station '
         'feeds it with the oil of its tank, which has a temperature of its own')
-    constant = load('rig_temperature', changes={
-        'actuators.leak.parameters.plant.thermal.supply_celsius': 41.0})
-    assert constant.configuration.actuator('leak').sheet.plant.thermal.supply_celsius == 41.0
+    with pytest.raises(ConfigError, match=r'actuators\.held\.parameters.* is not used: station'):
+        load('warm_stand', changes={
+            'actuators.held.parameters.plant.thermal.supply_celsius': 41.0})
+    more = {'model': 'isa_v5', 'variants': ['thermal'], 'load': {'kind': 'mass'}, 'parameters': {}}
+    for run_file, changes in (('rig_temperature', {}), ('pump_station', {
+            'actuators.leak': more, 'supplies.station.feeds': {
+                'press': ['left', 'right'], 'tool': ['clamp', 'leak']}})):
+        own = load(run_file, changes={
+            **changes, 'actuators.leak.parameters.plant.thermal.supply_celsius': 41.0})
+        assert own.configuration.actuator('leak').sheet.plant.thermal.supply_celsius == 41.0
