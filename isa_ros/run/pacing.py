@@ -110,15 +110,13 @@ class QuietStretch:
 
     def advance(self, loop: QuietTicks, n_ticks: float) -> None:
         """Advance by some quiet ticks, to the one before the last of ``n_ticks`` at most."""
-        begin, first = self._now(), loop.ticks
-        loop.advance_quietly(int(min(first + self._most, n_ticks - 1)))
-        if loop.ticks - first < self._most:
-            return
+        begin, first, most = self._now(), loop.ticks, self._most
+        loop.advance_quietly(int(min(first + most, n_ticks - 1)))
         spent = self._now() - begin
-        if spent < 0.5 * QUIET_S:
-            self._most *= 2
-        elif spent > QUIET_S:
-            self._most = max(1, self._most // 2)
+        if loop.ticks - first < most:
+            return
+        fitting = int(most * QUIET_S / spent) if spent > 0.0 else 2 * most
+        self._most = max(1, most // 2, min(fitting, 2 * most))
 
 
 class Laps:

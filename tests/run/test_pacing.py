@@ -176,22 +176,41 @@ class Loop:
         self.host.now += done * self.tick_s
 
 
+def stretches(stretch: QuietStretch, loop: Loop, n: int) -> list[int]:
+    """Return the ticks of so many calls."""
+    found = []
+    for _ in range(n):
+        before = loop.ticks
+        stretch.advance(loop, 1000)
+        found.append(loop.ticks - before)
+    return found
+
+
 def test_a_stretch_of_quiet_ticks_grows_to_its_time_and_no_further():
     """Of 0.3 ms each: 16 take 4.8 ms and stay, where 5 ms pass without a look at a service."""
     host = Host()
     loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
-    found = []
-    for _ in range(6):
-        before = loop.ticks
-        stretch.advance(loop, 1000)
-        found.append(loop.ticks - before)
-    assert found == [1, 2, 4, 8, 16, 16]
-    assert 0.5 * QUIET_S < 16 * 3e-4 < QUIET_S == 5e-3
-    loop.tick_s = 7e-4                      # a slower one: 16 take 11.2 ms, and 8 take 5.6 ms
-    for expected in (16, 8, 4, 4):
-        before = loop.ticks
-        stretch.advance(loop, 1000)
-        assert loop.ticks - before == expected
+    assert stretches(stretch, loop, 6) == [1, 2, 4, 8, 16, 16]
+    assert QUIET_S == 5e-3
+    loop.tick_s = 7e-4                      # a slower one: 16 take 11.2 ms, 8 5.6 ms and 7 4.9 ms
+    assert stretches(stretch, loop, 4) == [16, 8, 7, 7]
+    loop.tick_s = 1.6e-4                    # 14 take 2.2 ms, and 31 4.96 ms
+    assert stretches(stretch, loop, 4) == [7, 14, 28, 31]
+
+
+def test_a_stretch_is_halved_at_most_by_a_host_that_was_busy():
+    """Else the one after a pause of 1 s would be a single tick."""
+    host = Host()
+    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    stretches(stretch, loop, 5)
+    loop.tick_s = 1.0
+    assert stretches(stretch, loop, 2) == [16, 8]
+    assert stretches(stretch, loop, 4) == [4, 2, 1, 1]
+
+
+def test_a_stretch_that_takes_no_time_on_a_coarse_clock_grows():
+    host = Host()
+    assert stretches(QuietStretch(host.time), Loop(host, 0.0), 4) == [1, 2, 4, 8]
 
 
 def test_a_stretch_that_was_cut_short_says_nothing_of_the_next_one():
