@@ -66,6 +66,16 @@ def test_its_pressure_is_that_of_the_highest_pump_above_the_tank() -> None:
     assert sheet_of(STATION).is_switched and not sheet_of(SIMPLE).is_switched
 
 
+@pytest.mark.parametrize(('old', 'new', 'expected'), [
+    ('', '', 19.5),                                     # its unloading valve, of a gauge pressure
+    ('opens_mpa: 22.0', 'opens_mpa: 15.0', 15.2),       # its relief valve, above the tank's
+    ('opens_mpa: 19.5', 'opens_mpa: 20.3', 20.2)])      # its pump, above the tank's
+def test_at_rest_it_is_at_the_least_of_what_pump_and_valves_hold(
+        old: str, new: str, expected: float) -> None:
+    assert sheet_of(STATION.replace(old, new)).rest_pressure == pytest.approx(
+        1e6 * expected, rel=1e-12)
+
+
 def test_faults_and_set_points_have_the_part_in_their_keys() -> None:
     sheet = sheet_of(STATION)
     known = changeables(sheet, 'station.')
