@@ -30,10 +30,9 @@ class Check(NamedTuple):
     """Name of the first number."""
 
 
-def checks(parts: Iterable[tuple[str, Records]]) -> list[Check]:
-    """Return the checks of the parts of a state, which follow its time without gaps."""
+def checks(parts: Iterable[tuple[str, Records]], at: int = TIME_BYTES) -> list[Check]:
+    """Return the checks of parts of a state without gaps between them, from a byte on."""
     found: list[Check] = []
-    at = TIME_BYTES
     for name, rows in parts:
         for row in range(len(rows)):
             for own in _numbers(rows.dtype, at + row * rows.itemsize, name):

@@ -20,6 +20,7 @@ from isa_ros.export.layout import MemoryLayout
 from isa_ros.export.starting import start_forces
 from isa_ros.export.state_checks import Check, checks, FINITE, GAIN
 from isa_ros.reu.wiring import possible_modes
+from isa_ros.surroundings.circuits.accumulator import ICE
 import numpy as np
 
 _FIELDS = ('position', 'velocity', 'effort', 'stiffness', 'damping')
@@ -120,7 +121,7 @@ def _setpoints(own: Exported) -> Iterator[str]:
         ('LIMITS', int(config.beyond_range == LIMIT)),
         ('POSITION_LOW', number(low)), ('POSITION_HIGH', number(high)),
         ('FORCE_LOW', number(pulled)), ('FORCE_HIGH', number(pushed)),
-        ('VACUUM', number(-ATMOSPHERE))])
+        ('VACUUM', number(-ATMOSPHERE)), ('COLDEST', number(-ICE))])
 
 
 def _bounds(bounds: Bounds, what: str) -> str:
@@ -132,15 +133,19 @@ def _state(own: Exported, layout: MemoryLayout) -> Iterator[str]:
     rows = own.actuator.saved.rows
     actuator = own.actuator
     tail = actuator.tuning.snapshot() + actuator.digest.encode()
-    yield '/* A saved state: the time, these parts of the memory, these bytes, the checksum. */'
+    fed = own.ticked.memory.fed
+    at_tail = TIME_BYTES + sum(part.nbytes for _, part in rows)
+    yield ('/* A saved state: the time, these parts of the memory, these bytes, isa_fed, the '
+           'checksum. */')
     yield from _array('struct part', 'SAVED', [
         f'{{{layout.place(part)}, {part.nbytes}}} /* {name} */' for name, part in rows])
     yield from _array('unsigned char', 'TAIL', _lines(tail, lambda byte: f'0x{byte:02x}'))
-    yield from _array('struct check', 'CHECKS', map(_check, checks(rows)))
+    yield from _array('struct check', 'CHECKS', map(_check, [
+        *checks(rows), *checks([('fed', fed)], at_tail + len(tail))]))
     yield from _defined([
         ('STEP_NS', own.step_ns), ('MAX_TICKS', f'INT64_C({MAX_TICKS})'),
         ('OF_FLOAT', FINITE), ('OF_GAIN', GAIN),
-        ('AT_CHECKSUM', TIME_BYTES + sum(part.nbytes for _, part in rows) + len(tail))])
+        ('SAVED_TAIL', at_tail)])
 
 
 def _lines(values: Sequence[int], text: Callable[[int], str], a_line: int = 16) -> Iterator[str]:

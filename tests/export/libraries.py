@@ -9,7 +9,7 @@ from isa_ros.export.library import library
 import numpy as np
 
 ALIGNED = 16
-BEHIND = 24     # bytes of a saved state behind a snapshot of Python: digest and checksum
+BEHIND = 56     # bytes of a saved state behind a snapshot of Python: digest, fed and checksum
 _MIXER, _WORD = 0x9e3779b97f4a7c15, 2**64 - 1
 
 

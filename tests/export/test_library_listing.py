@@ -25,7 +25,7 @@ def test_what_it_is(loaded, own):
     assert about.digest.decode() == own.actuator.digest
     assert (about.step_ns, about.is_rotary, about.has_own_load) == (1_000_000, 0, 0)
     assert list(about.start) == [0.05, 0.0, 20.7e6, 0.0]
-    assert Instance(loaded).save().tobytes()[-BEHIND:-8] == about.digest
+    assert Instance(loaded).save().tobytes()[-BEHIND:-BEHIND + 16] == about.digest
 
 
 class Texts(ctypes.Structure):

@@ -31,6 +31,29 @@ def test_a_divergence_stays_until_the_next_start(loaded):
     assert instance.tick(port()) == 0
 
 
+def test_what_was_drawn_from_a_feed_is_saved(loaded):
+    """The next feed is made of it, in an instance that had another one too."""
+    feed = 1e9, 1e-5, 0.0, 0.0, 1.0, 2e-6, 0.0, 0.0
+    one, other = Instance(loaded), Instance(loaded)
+    assert one.tick(port(), feed=feed) == 0
+    state, fed = one.save(), one.fed.tobytes()
+    assert other.tick(port(x0=0.0501), feed=feed) == 0
+    for instance in (Instance(loaded), other):
+        assert instance.fed.tobytes() != fed
+        assert instance.restore(state) == 0 and instance.fed.tobytes() == fed
+        assert instance.save().tobytes() == state.tobytes()
+
+
+def test_nothing_of_a_divergence_remains_after_a_restore(loaded):
+    """The rates of its last step are not in a state, but those of a feed that is gone stay."""
+    instance = Instance(loaded)
+    state = instance.save()
+    assert instance.tick(port(x0=1e300), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) > 0
+    assert instance.restore(state) == 0 and instance.tick(port()) == 0
+    fresh = Instance(loaded)
+    assert fresh.tick(port()) == 0 and fresh.save().tobytes() == instance.save().tobytes()
+
+
 def test_the_state_that_diverged_is_named(loaded, own):
     """As the error of Python names it."""
     from isa_ros.errors import SimulationDiverged
@@ -46,7 +69,7 @@ def test_states_that_are_refused(loaded, own):
     instance = Instance(loaded)
     for k in range(20):
         instance.tick(port(x0=0.05 + 1e-5 * k))
-    state, before = instance.save(), bytes(instance.memory)
+    state = instance.save()
     assert instance.restore(state[:-1]) == WRONG_SIZE
     assert loaded.call('save', instance.memory, state.copy(), ctypes.c_size_t(8)) == WRONG_SIZE
 
@@ -59,14 +82,17 @@ def test_states_that_are_refused(loaded, own):
         assert instance.restore(changed(0, t_ns)) == WRONG_STATE
     assert instance.restore(changed(0, (2**32 - 1) * 1_000_000)) == 0
     assert instance.restore(state) == 0
+    before = bytes(instance.memory)
     assert instance.restore(changed(8, np.nan)) == WRONG_STATE
-    for at in (len(state) - 16, len(state) - 24, len(state) - 32):
+    assert instance.restore(changed(len(state) - 16, np.inf)) == WRONG_STATE    # heat
+    for at in (len(state) - 48, len(state) - 56, len(state) - 64):
         assert instance.restore(changed(at, 7)) == WRONG_STATE
-    for at in (len(state) - 9, len(state) - BEHIND - own.actuator.tuning.nbytes):
+    for at in (len(state) - 41, len(state) - BEHIND - own.actuator.tuning.nbytes):
         wrong = state.copy()
         wrong[at] ^= 1
         assert instance.restore(sealed(wrong)) == WRONG_STATE
-    assert instance.restore(state) == 0 and bytes(instance.memory) == before
+    assert bytes(instance.memory) == before
+    assert instance.restore(state) == 0 and instance.save().tobytes() == state.tobytes()
 
 
 def test_damaged_states_are_refused(loaded):

@@ -124,6 +124,17 @@ def test_feeds_are_finite(loaded):
     assert instance.fed.tobytes() != fed
 
 
+def test_oil_that_flows_in_is_not_below_absolute_zero(loaded):
+    """Only where the feed has a temperature."""
+    instance = Instance(loaded)
+    before = bytes(instance.memory)
+    feed = 1e9, 0.0, 0.0, 0.0, 1.0, 0.0
+    assert instance.tick(port(), feed=(*feed, 1.0, -273.2)) == BEYOND_RANGE
+    assert bytes(instance.memory) == before
+    assert instance.tick(port(), feed=(*feed, 1.0, -273.1)) == 0
+    assert instance.tick(port(), feed=(*feed, 0.0, -300.0)) == 0
+
+
 def test_a_clear_request_is_merged(loaded):
     instance = Instance(loaded)
     assert instance.tick(port(), command(HAS_CLEAR_FAULT)) == 0

@@ -30,6 +30,8 @@ enum { OF_POSITION, OF_VELOCITY, OF_EFFORT, OF_STIFFNESS, OF_DAMPING, OF_REFEREN
 #define AT(type, self, place) ((self) ? (const type *)((self)->block + (place)) : NULL)
 #define ALIGNED 16
 #define MIXER UINT64_C(0x9e3779b97f4a7c15)   /* odd: 2^64 over the golden ratio */
+#define SAVED_FED (SAVED_TAIL + sizeof TAIL)
+#define AT_CHECKSUM (SAVED_FED + sizeof(isa_fed_t))
 #define STATE_BYTES (AT_CHECKSUM + sizeof(uint64_t))
 
 _Static_assert(AT_CHECKSUM % sizeof(uint64_t) == 0, "a state is of whole words");
@@ -88,16 +90,22 @@ static int check_start(const isa_start_t *start)
   return start->supply_pressure < start->return_pressure ? ISA_PRESSURES : ISA_OK;
 }
 
+/* Forget all that was, also what the kernels work on and no saved state has. */
+static void clear(@NAME@_t *self)
+{
+  self->diverged = 0;
+  for (size_t k = 0; k < BLOCK_BYTES; k++) self->block[k] = 0;
+  for (size_t k = 0; k < COUNT(IMAGE); k++)
+    copy(self->block + IMAGE[k].place, &IMAGE[k].bits, sizeof IMAGE[k].bits);
+}
+
 ISA_EXPORT int ISA(start)(@NAME@_t *self, const isa_start_t *start)
 {
   const int code = start ? check_start(start) : ISA_OK;
   if (!self) return ISA_NO_INSTANCE;
   if (code) return code;
   if (!start) start = &ABOUT.start;
-  self->diverged = 0;
-  for (size_t k = 0; k < BLOCK_BYTES; k++) self->block[k] = 0;
-  for (size_t k = 0; k < COUNT(IMAGE); k++)
-    copy(self->block + IMAGE[k].place, &IMAGE[k].bits, sizeof IMAGE[k].bits);
+  clear(self);
   copy(self->block + AT_START, start, sizeof *start);
   if (HAS_OWN_LOAD)
     copy(self->block + AT_PORT_IN_FORCE + offsetof(isa_port_t, x0), &start->position,
@@ -166,6 +174,13 @@ static int are_finite(const void *values, size_t bytes)
   return 1;
 }
 
+/* Return 0, or why a feed cannot be taken. */
+static int check_feed(const isa_feed_t *feed)
+{
+  if (!are_finite(feed, sizeof *feed)) return ISA_NOT_FINITE;
+  return feed->is_warm > 0.0 && feed->celsius < COLDEST ? ISA_BEYOND_RANGE : ISA_OK;
+}
+
 /* Return 0, or why a port cannot be taken. */
 static int check_port(const isa_port_t *port)
 {
@@ -184,7 +199,7 @@ ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_
   if (!self || !(port || HAS_OWN_LOAD)) return ISA_NO_INSTANCE;
   if (self->diverged) return (int)self->diverged;
   if (port) code = check_port(port);
-  if (!code && feed && !are_finite(feed, sizeof *feed)) code = ISA_NOT_FINITE;
+  if (!code && feed) code = check_feed(feed);
   if (!code) code = check_command(self, &own);
   if (code) return code;
   copy(self->block + AT_PORT, port ? (const void *)port : self->block + AT_PORT_IN_FORCE,
@@ -283,8 +298,9 @@ ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
     to += SAVED[k].bytes;
   }
   copy(to, TAIL, sizeof TAIL);
+  copy(to + sizeof TAIL, self->block + AT_FED, sizeof(isa_fed_t));
   sum = ISA(checksum)(state, AT_CHECKSUM);
-  copy(to + sizeof TAIL, &sum, sizeof sum);
+  copy(to + sizeof TAIL + sizeof(isa_fed_t), &sum, sizeof sum);
   return are_possible(state) ? ISA_OK : ISA_NOT_FINITE;
 }
 
@@ -296,7 +312,7 @@ static int check_state(const unsigned char *state)
   copy(&t_ns, state, sizeof t_ns);
   copy(&sum, state + AT_CHECKSUM, sizeof sum);
   for (size_t k = 0; k < sizeof TAIL; k++)
-    if (state[AT_CHECKSUM - sizeof TAIL + k] != TAIL[k]) return ISA_WRONG_STATE;
+    if (state[SAVED_TAIL + k] != TAIL[k]) return ISA_WRONG_STATE;
   if (sum != ISA(checksum)(state, AT_CHECKSUM)) return ISA_WRONG_STATE;
   if (t_ns < 0 || t_ns % STEP_NS || t_ns / STEP_NS >= MAX_TICKS) return ISA_WRONG_STATE;
   return are_possible(state) ? ISA_OK : ISA_WRONG_STATE;
@@ -311,6 +327,7 @@ ISA_EXPORT int ISA(restore)(@NAME@_t *self, const void *state, size_t bytes)
   if (bytes != STATE_BYTES) return ISA_WRONG_SIZE;
   code = check_state(from);
   if (code) return code;
+  clear(self);
   copy(&t_ns, from, sizeof t_ns);
   t_ns /= PLANT_STEP_NS;
   copy(self->block + AT_CLOCK, &t_ns, sizeof t_ns);
@@ -319,9 +336,9 @@ ISA_EXPORT int ISA(restore)(@NAME@_t *self, const void *state, size_t bytes)
     copy(self->block + SAVED[k].place, from, SAVED[k].bytes);
     from += SAVED[k].bytes;
   }
+  copy(self->block + AT_FED, from + sizeof TAIL, sizeof(isa_fed_t));
   if (!HAS_LINK)
     copy(self->block + AT_SAMPLE, self->block + AT_OWN_SAMPLE, sizeof(isa_sample_t));
-  self->diverged = 0;
   return ISA_OK;
 }
 
@@ -362,7 +379,7 @@ ISA_EXPORT const char *ISA(message)(int code)
     case ISA_OK: return "done";
     case ISA_NO_INSTANCE: return "the instance, or a pointer that is needed, is NULL";
     case ISA_NOT_FINITE: return "a number is not finite";
-    case ISA_BEYOND_RANGE: return "a number of the setpoint, start or port is beyond its range";
+    case ISA_BEYOND_RANGE: return "a number of the setpoint, start, port or feed is beyond its range";
     case ISA_UNKNOWN_KIND: return "kinds or is_enabled of the command do not exist";
     case ISA_UNKNOWN_MODE: return "the actuator does not have this mode";
     case ISA_WRONG_MODE: return "the reference is not of the mode in force";

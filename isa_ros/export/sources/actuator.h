@@ -27,7 +27,7 @@ enum isa_code {
   ISA_OK = 0,
   ISA_NO_INSTANCE = -1,    /* the instance, or a pointer that is needed, is NULL */
   ISA_NOT_FINITE = -2,     /* a number is NaN or infinite */
-  ISA_BEYOND_RANGE = -3,   /* a number of a setpoint, start or port is beyond its range */
+  ISA_BEYOND_RANGE = -3,   /* a number of a setpoint, start, port or feed is beyond its range */
   ISA_UNKNOWN_KIND = -4,   /* bits of a command, or its is_enabled, that do not exist */
   ISA_UNKNOWN_MODE = -5,   /* a mode that does not exist, or that this actuator does not have */
   ISA_WRONG_MODE = -6,     /* a reference of another mode than the one in force */
@@ -92,7 +92,7 @@ typedef struct isa_feed {
   double share;            /* dq/dP of all actuators over that of this one */
   double flow;             /* what this one drew last, m3/s */
   double is_warm;          /* 1: its oil has this temperature; 0: that of the configuration */
-  double celsius;          /* of the oil that flows in */
+  double celsius;          /* of the oil that flows in, with is_warm; not below absolute zero */
 } isa_feed_t;
 
 /* A command, in force from the begin of the tick that it is given to; zeros: none. */
@@ -119,7 +119,10 @@ typedef struct isa_reply {
   double return_volume;    /* oil given to the return, m3 */
 } isa_reply_t;
 
-/* What it drew in the last tick with an isa_feed, for the next one; zeros before the first. */
+/*
+ * What it drew in the last tick with an isa_feed, for the next one; zeros before the first. A saved
+ * state has it too.
+ */
 typedef struct isa_fed {
   double flow;             /* drawn at the end of the tick, m3/s */
   double conductance;      /* dq/dP of its valve there, m3/s/Pa */

@@ -11,8 +11,8 @@ from tests.export.fmi.importing import Unit  # noqa: E402
 from tests.export.fmi.runs import SAMPLED  # noqa: E402
 
 pytestmark = pytest.mark.slow
-BEHIND = 39
-"""Bytes behind the snapshot: its digest 16, checksum 8, up to a word 7, the unit's 8."""
+BEHIND = 71
+"""Bytes behind the snapshot: its digest 16, fed 32, checksum 8, up to a word 7, the unit's 8."""
 
 # By tick: what the unit is set to, the command of the run, and the gains that both get.
 COURSE = {
