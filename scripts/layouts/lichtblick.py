@@ -3,7 +3,8 @@ A layout as Lichtblick reads it, and Foxglove, whose format it is.
 
 There is no published schema. `validateLayoutData` of Lichtblick (packages/suite-base/src/util/
 layout.ts, version 1.28.1) wants ``configById``, ``globalVariables`` and ``playbackConfig`` with a
-number as ``speed``. A panel's id is its type, ``!`` and a text; ``layout`` is a tree of ids.
+number as ``speed``. A panel's id is its type, ``!`` and a text; ``layout`` is a tree of ids. The
+text in a panel's bar is `lichtblickPanelTitle` there and `foxglovePanelTitle` in Foxglove.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,13 +28,14 @@ def text(pages: Sequence[Page], actuators: Sequence[str]) -> str:
     panels[_TABS] = {'activeTabIdx': 0, 'tabs': [
         {'title': page.title,
          'layout': _stack([_id(page, diagram) for diagram in page.diagrams])} for page in pages]}
-    panels[states] = {'isSynced': True, 'paths': [
+    panels[states] = {**_titled('device states'), 'isSynced': True, 'paths': [
         {'value': '.'.join(state_of(name)), 'label': name, 'timestampMethod': 'receiveTime'}
         for name in actuators]}
-    panels[_EVENTS] = {'searchTerms': [], 'minLogLevel': 1, 'topicToRender': '/coordinator/events'}
+    panels[_EVENTS] = {**_titled('events'), 'searchTerms': [], 'minLogLevel': 1,
+                       'topicToRender': '/coordinator/events'}
     panels[_DIAGNOSTICS] = {
-        'minLevel': 0, 'pinnedIds': [], 'hardwareIdFilter': '', 'topicToRender': '/diagnostics',
-        'sortByLevel': True}
+        **_titled('diagnostics'), 'minLevel': 0, 'pinnedIds': [], 'hardwareIdFilter': '',
+        'topicToRender': '/diagnostics', 'sortByLevel': True}
     layout = {
         'configById': panels, 'globalVariables': {}, 'userNodes': {},
         'playbackConfig': {'speed': 1}, 'version': 1,
@@ -46,10 +48,15 @@ def _plots(pages: Sequence[Page]) -> Iterator[tuple[str, dict[str, Any]]]:
     for page in pages:
         for diagram in page.diagrams:
             yield _id(page, diagram), {
-                **_PLOT, 'title': f'{page.title}: {diagram.title}', 'paths': [
+                **_PLOT, **_titled(f'{page.title}: {diagram.title}'), 'paths': [
                     {'value': f'{curve.topic}.{curve.path}', 'label': curve.label,
                      'color': curve.colour, 'enabled': True, 'timestampMethod': 'receiveTime'}
                     for curve in diagram.curves]}
+
+
+def _titled(text: str) -> dict[str, str]:
+    """Return the keys of a panel's title, one of each program."""
+    return {'lichtblickPanelTitle': text, 'foxglovePanelTitle': text}
 
 
 def _id(page: Page, diagram: Diagram) -> str:

@@ -177,6 +177,19 @@ def test_lichtblick_takes_the_layout(name: str) -> None:
         'machine', *(own.name for own in load_run(find(name, CONFIG)).actuators)]
 
 
+@pytest.mark.parametrize('key', ['lichtblickPanelTitle', 'foxglovePanelTitle'])
+def test_each_panel_but_the_tabs_has_a_title_of_its_own(key: str) -> None:
+    """By the key that each program reads: the bar of an untitled one says `Plot`."""
+    path = write_layouts.LAYOUTS / 'leg.lichtblick.json'
+    panels = json.loads(path.read_text(encoding='utf-8'))['configById']
+    titles = [panel[key] for name, panel in panels.items() if name != 'Tab!pages']
+    assert len(set(titles)) == len(titles) == len(panels) - 1
+    assert panels['Plot!kfe-1'][key] == 'kfe: force, N'
+    assert [panels[name][key] for name in (
+        'StateTransitions!states', 'RosOut!events', 'DiagnosticSummary!diagnostics')] == [
+            'device states', 'events', 'diagnostics']
+
+
 def leaves(tree: Any) -> Iterator[str]:
     if isinstance(tree, str):
         yield tree
