@@ -16,6 +16,9 @@ from isa_ros.surroundings.circuits.warmth import Heating, show_warmth, warm
 from isa_ros.surroundings.supply_port import FedNode, fill_feeds
 import numpy as np
 
+FED = len(FedNode._fields)
+"""Numbers of a `FedNode`."""
+
 
 class Flowing(NamedTuple):
     """Memory of a circuit with n nodes, m elements and a state of s numbers."""
@@ -86,7 +89,7 @@ class Nodes(NamedTuple):
     flowing: Flowing
     groups: Groups
     fed: np.ndarray
-    """The numbers of a `FedNode` of each, (f, 5)."""
+    """The numbers of a `FedNode` of each, (f, FED)."""
 
 
 class Shown(NamedTuple):
@@ -286,7 +289,3 @@ def show_rows(own):
          own.oil, own.samples)
     show_warmth(own.heating, own.samples)
     return 0
-
-
-FED = len(FedNode._fields)
-"""Numbers of a `FedNode`."""
