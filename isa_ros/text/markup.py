@@ -27,6 +27,12 @@ def tag(name: str, text: str, css_class: str = '') -> str:
     return f'<{name}{_class(css_class)}>{escaped(text)}</{name}>'
 
 
+def lines(text: str) -> str:
+    """Return an element that has a text with its lines and indents."""
+    own = '\n'.join(map(escaped, text.rstrip('\n').split('\n')))
+    return f'<pre>{own}</pre>'
+
+
 def table(rows: Sequence[Cells], times: Sequence[float | None] = ()) -> str:
     """
     Return a table, its header first; '' without rows.

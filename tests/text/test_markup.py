@@ -4,7 +4,7 @@ import base64
 import json
 
 from isa_ros.text.markup import (
-    details, download, escaped, json_in_page, pairs, picture, table, tag)
+    details, download, escaped, json_in_page, lines, pairs, picture, table, tag)
 import pytest
 
 EVIL = '<script>alert("1")</script>&\'\x1b[2J\u202e'
@@ -15,8 +15,13 @@ def test_a_text_has_no_markup_and_no_codes_of_terminals():
     assert escaped(EVIL) == SAFE
 
 
+def test_lines_stay_lines_and_other_codes_are_shown():
+    assert lines('a:\n  b: <1>\r\n\n') == '<pre>a:\n  b: &lt;1&gt;\\r</pre>'
+
+
 @pytest.mark.parametrize('made', [
-    tag('p', EVIL), tag('li', EVIL, 'bad'), table([('h',), (EVIL,)]), table([(EVIL,)]),
+    lines(f'a\n{EVIL}'), tag('p', EVIL), tag('li', EVIL, 'bad'),
+    table([('h',), (EVIL,)]), table([(EVIL,)]),
     pairs([(EVIL, 'x')]), details(EVIL, ''), download(EVIL, 'x'), picture(EVIL, b'')])
 def test_every_piece_escapes_what_it_is_given(made):
     assert SAFE in made and '<script' not in made and '\x1b' not in made

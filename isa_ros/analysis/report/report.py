@@ -26,7 +26,7 @@ from isa_ros.config.text.yaml_text import parse
 from isa_ros.run.events import Event, events_in
 from isa_ros.run.recorded import history_of
 from isa_ros.scenario.figures import figure_of as figure_of_scenario
-from isa_ros.text.markup import details, download, pairs, picture, table, tag
+from isa_ros.text.markup import details, download, lines, pairs, picture, table, tag
 from matplotlib.figure import Figure
 
 
@@ -131,9 +131,9 @@ def _what_ran(ran: WhatRan, signals: Signals) -> str:
     return ''.join([
         tag('h2', 'What was run'), pairs(ran.rows),
         f'<p>To repeat it, in the folder of the bag, with {files} beside it:</p>',
-        tag('pre', '\n'.join(ran.commands)),
+        lines('\n'.join(ran.commands)),
         details('Values that differ from the shipped ones', values, is_open=len(ran.values) < 12),
-        *(details(name, tag('pre', text)) for name, text in ran.files.items()
+        *(details(name, lines(text)) for name, text in ran.files.items()
           if name.endswith('.yaml'))])
 
 

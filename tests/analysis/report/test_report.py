@@ -29,6 +29,16 @@ def test_a_leg_has_a_figure_of_its_own_and_one_for_each_actuator(tmp_path):
     assert set(re.findall(r'https?://[^\s"\']+', page)) == {'https://github.com/leeoniya/uPlot'}
 
 
+def test_commands_and_files_stand_on_lines_of_their_own(tmp_path):
+    """As they are copied into a terminal: a newline is no code to be shown."""
+    page = write_report(recorded(GOLDEN / 'rotor_step'), tmp_path / 'page.html')[0].read_text()
+    first, *files = re.findall(r'<pre>(.*?)</pre>', page, re.DOTALL)
+    assert first.splitlines() == [
+        'isa replay rotor_step',
+        'isa bringup configuration.yaml --scenario scenario.yaml --out again']
+    assert len(files) == 2 and all(len(text.splitlines()) > 5 for text in files)
+
+
 def test_a_rig_has_no_leg(tmp_path):
     """The rotary rig alone, in degrees and newton metres."""
     written = write_report(recorded(GOLDEN / 'rotor_step'), tmp_path / 'page.html')
