@@ -166,8 +166,10 @@ def said(clone: Path, *words: str, **environment: str) -> tuple[str, str]:
 
 
 def test_kernels_are_made_before_the_first_simulation(ready: Path) -> None:
-    """Not for other commands, not without a compiled simulation, and once."""
-    assert said(ready, '--help') == ('ran -m isa_ros --help\n', '')
+    """Not for other commands or for help, not without a compiled simulation, and once."""
+    for words in (('--help',), ('demo', '--help'), ('bringup', 'leg', '-h')):
+        assert said(ready, *words) == (f'ran -m isa_ros {" ".join(words)}\n', '')
+    assert said(ready, 'demo', '--out', 'a-h') == ('ran -m isa_ros demo --out a-h\n', MADE)
     assert said(ready, 'demo', NUMBA_DISABLE_JIT='1') == ('ran -m isa_ros demo\n', '')
     assert said(ready, 'demo') == ('ran -m isa_ros demo\n', MADE)
     assert said(ready, 'step', 'isa_v5') == ('ran -m isa_ros step isa_v5\n', MADE)
