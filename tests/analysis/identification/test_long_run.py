@@ -43,6 +43,18 @@ def test_a_cosine_is_one_degree_of_freedom() -> None:
     assert cosines(white[:100], LAGS).freedom == 0
 
 
+def test_an_instant_counts_if_one_parameter_has_a_score_there() -> None:
+    white = scores(5, 0.0)
+    white[::3, 1] = 0.0
+    assert cosines(white, LAGS).freedom == 20
+
+
+def test_weights_fall_to_0_one_lag_beyond_the_last() -> None:
+    """Squares, and twice half of the products of neighbours."""
+    own = newey_west(np.array([[1.0], [2.0], [4.0]]), 1)
+    assert own.covariance == pytest.approx(1.0 + 4.0 + 16.0 + 2.0 * 0.5 * (2.0 + 8.0))
+
+
 def test_a_constant_score_is_no_spread() -> None:
     """At the minimum their sum is 0: the mean is not among the cosines."""
     assert cosines(np.full((N, 1), 7.0), LAGS).covariance[0, 0] == pytest.approx(0.0, abs=1e-18)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from isa_ros.analysis.measured import closing
 from isa_ros.analysis.measured.closing import Closed, closed, Free, shifted
 from isa_ros.analysis.measured.measurement import Measurement
+from isa_ros.analysis.measured.search import Minimum
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.errors import ParameterError
 import numpy as np
@@ -69,3 +70,16 @@ def test_a_measurement_is_shifted_to_the_clock_of_its_commands() -> None:
     found = shifted(signal, {'clock_ppm': 500.0, 'delay_ms': 20.0})
     assert found.t == pytest.approx([-0.02, 2.0 / 1.0005 - 0.02], abs=1e-12)
     assert found.values is signal.values
+
+
+def test_residuals_may_hang_together_over_40_samples_of_10_ms(
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    """0.4 s."""
+    seen = []
+
+    def searched(residuals: object, start: np.ndarray, box: object, lags: int) -> Minimum:
+        seen.append(lags)
+        return Minimum(start, start, 0.0)
+    monkeypatch.setattr(closing, 'searched', searched)
+    closed(None, 'ram', Measurement('m', {'position': Signal(T, SWING)}), [free()], 3.0)
+    assert seen == [40]
