@@ -89,6 +89,12 @@ def rehearse(name: str, objects: Objects) -> list[Wanted]:
 
 def _run(name: str) -> None:
     """Take a few ticks of a configuration, in memory, recorded and over sockets."""
+    with catch_warnings():      # scenarios are cut short, some are for other machines
+        simplefilter('ignore')
+        _ticks_of(name)
+
+
+def _ticks_of(name: str) -> None:
     run = load_run(shipped(CONFIG)[name])
     for actuator in warmed_up(run)[:1]:
         AnswerLoop(actuator.ticked, actuator.advance, _LARGEST)
@@ -100,10 +106,8 @@ def _run(name: str) -> None:
             scenario = load_scenario(path, run)
             LocalRun(scenario.run).simulate(
                 _TICKS, ScheduledSource(scenario.commands, scenario.changes), _Nowhere())
-            if scenario.run.controllers or scenario.run.called:
-                with catch_warnings():      # nothing moves, and levers are 0
-                    simplefilter('ignore')
-                    isa_ros.load(name, scenario=str(path)).simulate(_CONTROLLED_S)
+            if scenario.run.controllers or scenario.run.called:     # nothing moves
+                isa_ros.load(name, scenario=str(path)).simulate(_CONTROLLED_S)
 
 
 @contextmanager

@@ -95,14 +95,15 @@ def called(clone: Path, on_terminal: bool) -> Iterator[Call]:
 def test_pip_is_shown_with_its_phases_and_totals(clone: Path, on_terminal: bool) -> None:
     """What a marker excludes is not among the total; the second call is silent."""
     with called(clone, on_terminal) as call:
-        call.wait_for('installing requirements.txt, once: collecting 1 of 3 packages')
+        title = 'installing requirements.txt, once: '
+        call.wait_for(f'{title}collecting {"1 of 3 packages" if on_terminal else ""}')
         (clone / 'a').touch()
         # A pipe has a line for each phase, with the numbers that it began with.
         call.wait_for('downloading 2 of 3 packages' if on_terminal else 'downloading ')
         (clone / 'b').touch()
-        call.wait_for('installing 1 of 3 packages')
+        call.wait_for('installing 1 of 3 packages' if on_terminal else f'{title}installing ')
         (clone / 'c').touch()
-        call.wait_for('installing requirements.txt, once: done in ')
+        call.wait_for(f'{title}done in ')
         call.wait_for('installing isa_ros: done in ')
         assert call.process.wait(60) == 0
         assert call.process.stdout is not None
@@ -130,7 +131,7 @@ def test_a_pip_that_fails_is_3_with_the_end_of_its_log(clone: Path) -> None:
 
 def test_an_interrupt_ends_pip_too(clone: Path) -> None:
     """What runs in the background of a script would ignore it."""
-    with called(clone, on_terminal=False) as call:
+    with called(clone, on_terminal=True) as call:
         call.wait_for('collecting 1 of 3 packages')
         pip = subprocess.run(
             ['pgrep', '-P', str(call.process.pid), '-f', 'pip install'], check=True,
@@ -176,6 +177,18 @@ def test_kernels_are_made_before_the_first_simulation(ready: Path) -> None:
     (ready / 'isa_ros' / 'kernels').mkdir(parents=True)
     (ready / 'isa_ros' / 'kernels' / 'x86-64.so').touch()
     assert said(ready, 'demo') == ('ran -m isa_ros demo\n', '')
+
+
+def test_a_link_to_it_is_the_clone(ready: Path, tmp_path: Path) -> None:
+    """From another folder, also by two links; nothing is made beside them."""
+    folder = tmp_path / 'links'
+    folder.mkdir()
+    (folder / 'first').symlink_to(ready / 'isa')
+    (folder / 'isa').symlink_to('first')
+    found = subprocess.run([folder / 'isa', '--help'], capture_output=True, text=True,
+                           cwd=folder, env={'PATH': f'{ready / "bin"}:{os.environ["PATH"]}'})
+    assert (found.stdout, found.stderr) == ('ran -m isa_ros --help\n', '')
+    assert sorted(path.name for path in folder.iterdir()) == ['first', 'isa']
 
 
 def test_a_copy_without_scripts_makes_no_kernels(ready: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import signal
 import subprocess
 import sys
+import warnings
 from types import SimpleNamespace
 
 from isa_ros.core.bound import run_rounds
@@ -19,6 +20,7 @@ from isa_ros.core.objects import own_target, TARGETS
 import pytest
 from scripts import kernel_objects, make_kernels
 from scripts.kernel_objects import Objects
+from scripts import kernel_rehearsal
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
 from scripts.make_kernels import link, main, make, Making, PERIOD_S, Progress
 from tests.text.terminal import Terminal
@@ -48,6 +50,13 @@ def rehearsed(name, objects):
 def alone(objects):
     """Return what actuators without a run ask for, by name."""
     return {wanted.name: wanted for wanted in rehearsed(ALONE, objects)}
+
+
+def test_a_rehearsal_is_silent(monkeypatch, recwarn):
+    """What shipped runs warn of is nothing of the user's."""
+    monkeypatch.setattr(kernel_rehearsal, '_ticks_of', lambda name: warnings.warn(name))
+    kernel_rehearsal._run('leg.yaml')
+    assert not recwarn.list
 
 
 def test_every_configuration_is_rehearsed():

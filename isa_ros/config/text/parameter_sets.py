@@ -108,7 +108,8 @@ def build_one_of(
         if key in section:
             break
     else:
-        raise ConfigError(place.has(f'lacks kind, one of {", ".join(kinds)}'))
+        raise ConfigError(
+            _last_written(section, place).has(f'lacks kind, one of {", ".join(kinds)}'))
     rest = dict(section)
     kind = rest.pop(key)
     if not isinstance(kind, SourcedValue) or str(kind.value) not in kinds:

@@ -82,6 +82,15 @@ def test_what_is_wrong_is_named_with_file_and_key(
     assert '\n' not in str(caught.value)
 
 
+def test_a_kind_that_lacks_is_told_of_the_file_with_the_section() -> None:
+    """Of the run file where it has a value of the section, else of the model."""
+    section = written({'law': 'plain', 'gain': 2.0}, MODEL)
+    for own, expected in ((written({'bore_mm': 2.0}, RUN / 'drive'), 'run.yaml: parameters.drive'),
+                          (written({'bore_mm': 2.0}, MODEL / 'drive'), 'model.yaml: drive')):
+        with pytest.raises(ConfigError, match=f'^{expected} lacks kind, one of small, big$'):
+            build(Sheet, section | {'drive': own}, MODEL)
+
+
 @pytest.mark.parametrize('over, expected', [
     ({'drive': {'bore_mm': -1.0}}, '^run.yaml: parameters.drive.bore_mm = -1 mm, must be > 0'),
     ({'drive': {'rod_mm': 1.0}}, '^run.yaml: parameters.drive.rod_mm is unknown'),
