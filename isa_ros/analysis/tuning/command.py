@@ -15,6 +15,7 @@ from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.errors import ConfigError
 from isa_ros.reu.schedule import Schedule
+from isa_ros.reu.wiring import active
 from isa_ros.text.json_file import write_wanted
 from isa_ros.text.progress import counted
 from isa_ros.text.table import aligned, Cells, RIGHT
@@ -34,6 +35,7 @@ def tune(options: Namespace) -> bool:
             f'--phase-margin = {wanted.phase_margin:g} deg, must be {MARGINS[0]:g} to '
             f'{MARGINS[1]:g} deg')
     named = chosen(choice)
+    _refuse_without_force(named)
     bench = rig_of(named, choice)
     progress = counted(sys.stderr, 'responses')
     try:
@@ -51,6 +53,16 @@ def tune(options: Namespace) -> bool:
         options.out.write_text(run_file(named, found, text), encoding='utf-8')
         print(options.out)
     return found.is_reached
+
+
+def _refuse_without_force(named: Chosen) -> None:
+    """Refuse an actuator whose force block is off, as under position control."""
+    is_on = active(named.run.actuator(named.actuator).sheet.reu)
+    if 'force' not in is_on:
+        outer = next(iter(is_on), 'position')
+        raise ConfigError(
+            f'{named.actuator}: reu.force is off, and gains of another block are not tuned; '
+            f'isa bode --loop {outer} and isa step --loop {outer} measure what a gain does')
 
 
 def _strokes(given: list[float] | None) -> tuple[float, ...]:

@@ -140,6 +140,8 @@ def test_gains_are_those_of_mid_stroke_and_rounded():
     (['isa_v5', '--bandwidth', '1000'], '--bandwidth = 1000 Hz, must be < 1000 Hz'),
     (['isa_v5', '--strokes', '50', '120'], '--strokes 120, must be 0 to 100 %'),
     (['isa_v5', '--variant', 'feedback_linearisation'], 'reu.force.kind must be pid to be tuned'),
+    (['rig_rotary_position'], 'rotor: reu.force is off, and gains of another block are not tuned; '
+     'isa bode --loop position and isa step --loop position measure what a gain does'),
     (['leg.yaml'], 'several actuators, --actuator must name one')])
 def test_what_cannot_be_tuned_is_one_line_and_2(arguments, expected, capsys):
     assert cli.main(['tune', *arguments]) == 2
