@@ -27,7 +27,7 @@ PRIMITIVES = {
 _SEQUENCE = re.compile(r'sequence<(.+?)(?:, \d+)?>')
 _ARRAY = re.compile(r'(.+)\[(\d+)\]')
 _STRING = re.compile(r'string(<\d+>)?')
-_LENGTH = struct.Struct('<I')     # of a string; the encapsulation header has its size
+_LENGTH = struct.Struct('<I')     # of strings and sequences; the encapsulation header has its size
 _DECLARATIONS = 1024    # of fields that are remembered: encoding a message reads each again
 
 
@@ -106,6 +106,18 @@ def encode_with_slots(message: Message) -> tuple[bytes, dict[str, Slot]]:
     return bytes(encoder.buffer), encoder.slots()
 
 
+def put_length(buffer: bytearray, n: int) -> None:
+    """Append the length of a string or sequence to the bytes of a message so far."""
+    buffer += bytes(-len(buffer) % _LENGTH.size) + _LENGTH.pack(n)
+
+
+def put_string(buffer: bytearray, value: str) -> None:
+    """Append a string to the bytes of a message so far."""
+    text = value.encode() + b'\0'
+    put_length(buffer, len(text))
+    buffer += text
+
+
 class _Encoder:
     """Encoder of one message: its bytes so far, and the sequences of primitives in them."""
 
@@ -153,13 +165,9 @@ class _Encoder:
             raise CdrError(f'{path} is a {item}, which has no canonical encoding here')
         for k, value in enumerate(values):
             if is_string(item):
-                self._add_string(value)
+                put_string(self.buffer, value)
             else:
                 self.add_message(value, f'{path}[{k}].' if is_array else f'{path}.')
-
-    def _add_string(self, value: str) -> None:
-        text = value.encode() + b'\0'
-        self.buffer += bytes(-len(self.buffer) % _LENGTH.size) + _LENGTH.pack(len(text)) + text
 
     def _add_primitives(
             self, code: str, values: Iterable[Any], path: str,

@@ -1,20 +1,20 @@
 """diagnostic_msgs/DiagnosticArray on ``/diagnostics``: the states of the parts of a run."""
 
 from collections.abc import Mapping, Sequence
+import struct
 from typing import NamedTuple
 
-from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from msg_adapters.cdr import encode
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from msg_adapters.cdr import ENCAPSULATION, put_length, put_string
 from msg_adapters.cdr_reader import decode
 from msg_adapters.template import stamp
-from std_msgs.msg import Header
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticArray'
 TOPIC = ('/diagnostics', TYPE)
 
 OK = DiagnosticStatus.OK
 DIGITS = 9      # of a number in a message
+_STAMP = struct.Struct('<iI')
 
 
 class Status(NamedTuple):
@@ -30,15 +30,24 @@ class Status(NamedTuple):
 
 
 def pack(t_ns: int, statuses: Sequence[Status]) -> bytes:
-    """Return the CDR bytes of the statuses at ``t_ns``; numbers have `DIGITS` digits."""
-    seconds, nanoseconds = stamp(t_ns)
-    return encode(DiagnosticArray(
-        header=Header(stamp=Time(sec=seconds, nanosec=nanoseconds)),
-        status=[DiagnosticStatus(
-            level=status.level, name=f'{status.hardware}: {status.task}',
-            message=status.message, hardware_id=status.hardware,
-            values=[KeyValue(key=key, value=_text(value))
-                    for key, value in status.values.items()]) for status in statuses]))
+    """
+    Return the CDR bytes of the statuses at ``t_ns``; numbers have `DIGITS` digits.
+
+    They are written as they come: objects of messages, some hundred, would take most of the time.
+    """
+    buffer = bytearray(ENCAPSULATION + _STAMP.pack(*stamp(t_ns)))
+    put_string(buffer, '')      # the frame
+    put_length(buffer, len(statuses))
+    for status in statuses:
+        buffer += status.level
+        put_string(buffer, f'{status.hardware}: {status.task}')
+        put_string(buffer, status.message)
+        put_string(buffer, status.hardware)
+        put_length(buffer, len(status.values))
+        for key, value in status.values.items():
+            put_string(buffer, key)
+            put_string(buffer, _text(value))
+    return bytes(buffer)
 
 
 def _text(value: float | str) -> str:
