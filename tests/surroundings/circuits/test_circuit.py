@@ -176,6 +176,21 @@ def test_the_return_side_has_its_pressure() -> None:
     assert circuit.pressures[0][1] == pytest.approx(0.2e6 + 0.35e6 + 0.03e6, abs=10.0)
 
 
+def test_power_is_that_of_the_tick_and_its_peak_the_largest() -> None:
+    """E1 over the tick, W, of the whole and of both manifolds, whose peaks are at other ticks."""
+    circuit, powers = circuit_of(STATION, 'left', 'right'), []
+    at = [0, circuit._row_of['left'], circuit._row_of['right']]
+    for drawn in ((6.0, 3.0), (9.0, 1.0), (2.0, 5.0), (1.0, 2.0)):
+        before = circuit.samples['energy'][at]
+        circuit.advance_held([flow * LPM * 1e-3 for flow in drawn], [1e-6, 2e-6])
+        powers.append(circuit.samples['power'][at])
+        grown = (circuit.samples['energy'][at] - before) / 1e-3
+        assert powers[-1] == pytest.approx(grown, rel=1e-9, abs=0.0)
+    assert np.argmax(powers, axis=0).tolist() == [0, 1, 0]
+    assert circuit.samples['peak_power'][at].tolist() == np.max(powers, axis=0).tolist()
+    assert min(np.max(powers, axis=0)) > 500.0
+
+
 def test_what_its_port_says_is_what_it_does() -> None:
     """Inflow, capacity, slope and trend at a manifold against a step of the network itself."""
     circuit = circuit_of(STATION, 'left', 'right')

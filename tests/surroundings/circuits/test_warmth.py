@@ -95,16 +95,23 @@ def test_all_heat_is_stored_or_given_away(text: str) -> None:
         float(whole['relief_energy'] + whole['return_energy']) - paid, abs=1e-9 * throughput)
 
 
-def test_the_heat_is_that_of_losses_shafts_and_actuators() -> None:
-    """T8: what the shaft gave, less what the oil stores, and what the actuators kept."""
-    text = HOT.replace('leakage_lpm_per_mpa: 0.1', 'leakage_lpm_per_mpa: 0.0')
+GAS = 'buffer: {kind: accumulator, at: main, gas_volume_l: 0.5, precharge_mpa: 12.0, ' \
+    'thermal_time_constant_s: 0.1}\n'
+
+
+@pytest.mark.parametrize('more', ['', GAS])
+def test_the_heat_is_that_of_losses_shafts_and_actuators(more: str) -> None:
+    """T8: what the shaft gave, less what the oil stores, and what actuators and gas kept."""
+    text = HOT.replace('leakage_lpm_per_mpa: 0.1', 'leakage_lpm_per_mpa: 0.0') + more
     circuit = circuit_of(text, 'main')
     for _ in range(400):
         circuit.advance_held([8.0 * LPM * 1e-3], [3.0 * LPM * 1e-3])
     whole = circuit.samples[0]
     shaft = float(whole['pump_energy']) / 0.85
+    of_gas = float(row(circuit, text, 'buffer')['relief_energy']) if more else 0.0
+    assert not more or abs(of_gas) > 50.0
     assert float(whole['heat']) == pytest.approx(
-        shaft - float(whole['pump_energy']) + float(whole['relief_energy'])
+        shaft - float(whole['pump_energy']) + float(whole['relief_energy']) - of_gas
         + float(whole['return_energy']) + 0.9 * float(whole['energy']), rel=1e-12, abs=0.0)
     assert shaft - float(whole['pump_energy']) > 200.0
 
