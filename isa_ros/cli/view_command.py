@@ -5,14 +5,16 @@ from argparse import Namespace
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+import sys
 from typing import Any
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.run_arguments import run_options
 from isa_ros.cli.running import recorded, simulating
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, one_line
 from isa_ros.run.options import OPTION_OF, request_of_arguments
+from isa_ros.text.progress import underway
 
 _OPTIONS = [OPTION_OF[name] for name in (
     'scenario_file', 'set', 'seed', 'start_time', 'duration', 'out', 'overwrite', 'compression',
@@ -58,7 +60,8 @@ def _play(bag: Path, port: int) -> bool:
     from isa_ros.processes.stopping import StopRequest
     from isa_ros.view.playing import Player
     from isa_ros.view.server import serving
-    player = Player(bag, Path())
+    with underway(sys.stderr, one_line(f'reading {bag}')):
+        player = Player(bag, Path())
     with StopRequest() as should_stop, serving(player.hub, port) as address:
         _tell(address)
         player.play(should_stop)

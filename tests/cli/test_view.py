@@ -1,6 +1,7 @@
 """`isa view`: a run or a bag by what is given, refusals in one line, ended by a signal."""
 
 from http.client import HTTPConnection
+import io
 from pathlib import Path
 import signal
 import subprocess
@@ -10,6 +11,8 @@ import time
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
+from isa_ros.errors import BagError
+from isa_ros.view import playing
 import pytest
 from tests.bag.golden import GOLDEN
 
@@ -55,6 +58,23 @@ def test_a_bag_plays_until_a_signal():
         assert page.status == 200 and page.readline().startswith(b'data: {"first":0,')
         assert own.end() == (0, '', '')
         page.read()     # the stream has an end
+
+
+def test_a_terminal_sees_that_the_bag_is_read(monkeypatch, capsys):
+    """A long one takes seconds before there is an address."""
+    seen = []
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    def player(bag: Path, folder: Path) -> None:
+        seen.append(sys.stderr.getvalue())
+        raise BagError(f'{bag} has no end')
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    monkeypatch.setattr(playing, 'Player', player)
+    assert main(['view', str(GOLDEN / 'rotor_step')]) == BagError.exit_code
+    assert len(seen) == 1 and 'reading ' in seen[0]
 
 
 def test_a_run_is_recorded_until_a_signal(tmp_path: Path):
