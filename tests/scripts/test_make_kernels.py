@@ -9,8 +9,8 @@ from pathlib import Path
 import signal
 import subprocess
 import sys
-import warnings
 from types import SimpleNamespace
+import warnings
 
 from isa_ros.core.bound import run_rounds
 from isa_ros.core.elf import symbols
@@ -18,9 +18,8 @@ from isa_ros.core.kernel_library import address_in
 from isa_ros.core.lowering import lower_only
 from isa_ros.core.objects import own_target, TARGETS
 import pytest
-from scripts import kernel_objects, make_kernels
+from scripts import kernel_objects, kernel_rehearsal, make_kernels
 from scripts.kernel_objects import Objects
-from scripts import kernel_rehearsal
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
 from scripts.make_kernels import link, main, make, Making, PERIOD_S, Progress
 from tests.text.terminal import Terminal
