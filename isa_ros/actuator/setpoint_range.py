@@ -44,6 +44,8 @@ NUMBERS = {
 _FLOAT_BYTES = 8
 MOST_TURNS = 1e4
 """Largest position of a motor either way."""
+LOAD_BEYOND = 0.5
+"""Of the stroke, for a load that a program moves beyond its end; end stops allow far less."""
 
 
 class Bounds(NamedTuple):
@@ -83,6 +85,13 @@ def positions(sheet: ActuatorSheet) -> Bounds:
         most = MOST_TURNS * sheet.plant.drive.stroke
         return Bounds(-most, most, length, f'{MOST_TURNS:g} turns')
     return Bounds(0.0, sheet.plant.drive.stroke, length, 'the stroke')
+
+
+def load_positions(sheet: ActuatorSheet) -> Bounds:
+    """Return where a load may be that a program moves."""
+    own = positions(sheet)
+    beyond = LOAD_BEYOND * (own.high - own.low)
+    return Bounds(own.low - beyond, own.high + beyond, own.unit, 'half a stroke beyond the ends')
 
 
 def reference_bounds(sheet: ActuatorSheet) -> Mapping[int, Bounds]:

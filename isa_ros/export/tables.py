@@ -6,7 +6,7 @@ from typing import Any
 
 from isa_ros.actuator.integration import state_name, STATE_SIZE
 from isa_ros.actuator.setpoint_range import (
-    Bounds, LIMIT, positions, reference_bounds, setpoint_bounds)
+    Bounds, LIMIT, load_positions, positions, reference_bounds, setpoint_bounds)
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.device import MODES
 from isa_ros.core.fields import units_of
@@ -112,7 +112,7 @@ def _setpoints(own: Exported) -> Iterator[str]:
         *(_bounds(bounds.get(field, _EVERYTHING), field) for field in _FIELDS),
         *(_bounds(references.get(mode, _EVERYTHING), f'reference, mode {name}')
           for mode, name in enumerate(MODES))])
-    low, high, _, _ = positions(sheet)
+    (low, high, _, _), load = positions(sheet), load_positions(sheet)
     pulled, pushed = start_forces(config, float(own.start['force'][0]))
     yield from _defined([
         ('EVERY_KIND', EVERY_KIND),
@@ -120,6 +120,7 @@ def _setpoints(own: Exported) -> Iterator[str]:
         ('POSSIBLE_MODES', sum(1 << mode for mode in possible_modes(sheet.reu))),
         ('LIMITS', int(config.beyond_range == LIMIT)),
         ('POSITION_LOW', number(low)), ('POSITION_HIGH', number(high)),
+        ('LOAD_LOW', number(load.low)), ('LOAD_HIGH', number(load.high)),
         ('FORCE_LOW', number(pulled)), ('FORCE_HIGH', number(pushed)),
         ('VACUUM', number(-ATMOSPHERE)), ('COLDEST', number(-ICE))])
 

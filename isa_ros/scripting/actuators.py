@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from isa_ros.actuator.setpoint_range import LOAD_BEYOND
 from isa_ros.config.runs.external_config import refuse_force, refuse_start
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
@@ -17,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _FIRST_TICKS = 1000     # samples before the log grows
-_BEYOND = 0.5           # of the stroke, for a load beyond its end; end stops allow far less
 
 
 class Actuators:
@@ -138,9 +138,9 @@ class Actuators:
     def _refuse_far(self) -> None:
         """Refuse a position that is far outside the stroke, before it breaks the tick."""
         place, stroke = self._port['x0'], self._strokes
-        is_far = np.abs(place - 0.5 * stroke) > (0.5 + _BEYOND) * stroke
+        is_far = np.abs(place - 0.5 * stroke) > (0.5 + LOAD_BEYOND) * stroke
         for k in np.flatnonzero(is_far).tolist():
-            unit, beyond = self._units[k], _BEYOND * stroke[k]
+            unit, beyond = self._units[k], LOAD_BEYOND * stroke[k]
             raise ConfigError(
                 f'{self.names[k]}: position = {place[k]:g} {unit}, must be '
                 f'{-beyond:g} to {stroke[k] + beyond:g} {unit}: half a stroke beyond its ends')

@@ -54,6 +54,26 @@ def test_no_instance(loaded):
     assert np.isnan(loaded.call('load_position', None, result=ctypes.c_double))
 
 
+def test_a_copy_and_memory_without_an_instance_are_none(loaded):
+    """Each call that works on one says so, and changes neither the copy nor the instance."""
+    instance, other = Instance(loaded), Instance(loaded)
+    state = np.zeros(loaded.size('state_size'), np.uint8)
+    size = ctypes.c_size_t(len(state))
+    assert loaded.call('save', instance.memory, state, size) == 0
+    other.memory[:] = instance.memory
+    empty = np.zeros_like(instance.memory, shape=len(instance.memory) + 16)
+    empty = empty[-empty.ctypes.data % 16:][:len(instance.memory)]
+    before = bytes(instance.memory)
+    for memory in (other.memory, empty):
+        kept = bytes(memory)
+        assert loaded.call('tick', memory, port(), None, None) == NO_INSTANCE
+        assert loaded.call('start', memory, None) == NO_INSTANCE
+        for name in ('save', 'restore'):
+            assert loaded.call(name, memory, state, size) == NO_INSTANCE
+        assert (bytes(memory), bytes(instance.memory)) == (kept, before)
+    assert instance.tick(port()) == 0
+
+
 def test_threads_with_instances_of_their_own(loaded):
     """As many as cores and one more, on one library: each as if it were alone."""
     def run(k, samples):

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.slow
 def test_a_divergence_stays_until_the_next_start(loaded):
     instance = Instance(loaded)
     state = instance.save()
-    code = instance.tick(port(x0=1e300))
+    code = instance.tick(port(v0=1e300))
     assert 0 < code <= STATE_SIZE
     message = loaded.message(code)
     assert re.fullmatch(r'[a-z_.0-9]+ is not finite: the model has diverged', message)
@@ -27,7 +27,7 @@ def test_a_divergence_stays_until_the_next_start(loaded):
     size = ctypes.c_size_t(len(state))
     assert loaded.call('save', instance.memory, state.copy(), size) == NOT_FINITE
     assert instance.restore(state) == 0 and instance.tick(port()) == 0
-    assert instance.tick(port(x0=1e300)) == code and instance.start() == 0
+    assert instance.tick(port(v0=1e300)) == code and instance.start() == 0
     assert instance.tick(port()) == 0
 
 
@@ -48,7 +48,7 @@ def test_nothing_of_a_divergence_remains_after_a_restore(loaded):
     """The rates of its last step are not in a state, but those of a feed that is gone stay."""
     instance = Instance(loaded)
     state = instance.save()
-    assert instance.tick(port(x0=1e300), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) > 0
+    assert instance.tick(port(v0=1e300), feed=(1e9, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) > 0
     assert instance.restore(state) == 0 and instance.tick(port()) == 0
     fresh = Instance(loaded)
     assert fresh.tick(port()) == 0 and fresh.save().tobytes() == instance.save().tobytes()
@@ -59,8 +59,8 @@ def test_the_state_that_diverged_is_named(loaded, own):
     from isa_ros.errors import SimulationDiverged
     actuator = SmartActuator(own.chosen.config, timing_of(own.chosen.run))
     with pytest.raises(SimulationDiverged) as error:
-        actuator.tick(port(x0=1e300))
-    message = loaded.message(Instance(loaded).tick(port(x0=1e300)))
+        actuator.tick(port(v0=1e300))
+    message = loaded.message(Instance(loaded).tick(port(v0=1e300)))
     assert message.startswith(error.value.field.removeprefix('isa_v5: ') + ' is not finite')
 
 

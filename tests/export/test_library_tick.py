@@ -104,13 +104,16 @@ def test_ports_are_finite(loaded, field):
 
 
 @pytest.mark.parametrize('given', [
-    {'inverse_mass': -1e-9}, {'supply_pressure': -101326.0}, {'return_pressure': -1e6}])
+    {'inverse_mass': -1e-9}, {'supply_pressure': -101326.0}, {'return_pressure': -1e6},
+    {'x0': -0.05001}, {'x0': 0.15001}, {'x0': 50.0}])     # of 0.1 m: half of it beyond its ends
 def test_ports_that_no_load_or_supply_has(loaded, given):
     instance = Instance(loaded)
     before = bytes(instance.memory)
     assert instance.tick(port(**given)) == BEYOND_RANGE
     assert bytes(instance.memory) == before
     assert instance.tick(port(inverse_mass=0.02, return_pressure=-101325.0)) == 0
+    for x0 in (-0.0499, 0.1499):
+        assert instance.tick(port(x0=x0)) != BEYOND_RANGE
 
 
 def test_feeds_are_finite(loaded):

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.requests import start_mode
-from isa_ros.actuator.setpoint_range import Bounds, reference_bounds, setpoint_bounds
+from isa_ros.actuator.setpoint_range import (
+    Bounds, load_positions, reference_bounds, setpoint_bounds)
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import LOAD_PORT
@@ -96,12 +97,15 @@ def _references(sheet: ActuatorSheet) -> str:
 
 
 def _port(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
-    is_rotary = config.sheet.is_rotary
+    is_rotary, bounds = config.sheet.is_rotary, load_positions(config.sheet)
     for field, (name, unit, meaning) in PORT_FIELDS.items():
-        value = _load_position(config, start) if field == 'x0' else 0.0
-        yield _input(
-            f'port.{name}', Type.REAL, meaning, of_coordinate(unit, is_rotary), value,
-            )._replace(low=0.0 if field == 'inverse_mass' else None)
+        unit = of_coordinate(unit, is_rotary)
+        if field == 'x0':
+            yield _input(f'port.{name}', Type.REAL, meaning, unit, _load_position(config, start),
+                         bounds)
+        else:
+            yield _input(f'port.{name}', Type.REAL, meaning, unit, 0.0)._replace(
+                low=0.0 if field == 'inverse_mass' else None)
 
 
 def _load_position(config: ConfiguredActuator, start: np.void) -> float:

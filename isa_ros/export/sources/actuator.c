@@ -37,6 +37,7 @@ enum { OF_POSITION, OF_VELOCITY, OF_EFFORT, OF_STIFFNESS, OF_DAMPING, OF_REFEREN
 _Static_assert(AT_CHECKSUM % sizeof(uint64_t) == 0, "a state is of whole words");
 
 struct @NAME@ {
+  const void *place;                    /* of the instance: a copy of it is none */
   int64_t diverged;                     /* what the last tick returned; 0: all is finite */
   int64_t tables[COUNT(WORDS)];
   _Alignas(ALIGNED) unsigned char block[BLOCK_BYTES];
@@ -48,6 +49,11 @@ static void copy(void *to, const void *from, size_t bytes)
   unsigned char *target = to;
   const unsigned char *source = from;
   for (size_t k = 0; k < bytes; k++) target[k] = source[k];
+}
+
+static int is_instance(const @NAME@_t *self)
+{
+  return self && self->place == self;
 }
 
 static int64_t whole_at(const @NAME@_t *self, size_t place)
@@ -73,6 +79,7 @@ ISA_EXPORT @NAME@_t *ISA(create)(void *memory, size_t bytes)
   if (!memory || (uintptr_t)memory % ALIGNED || bytes < sizeof *self) return NULL;
   for (size_t k = 0; k < COUNT(WORDS); k++)
     self->tables[k] = WORDS[k].value + (WORDS[k].is_place ? (int64_t)(intptr_t)self->block : 0);
+  self->place = self;
   ISA(start)(self, NULL);
   return self;
 }
@@ -102,7 +109,7 @@ static void clear(@NAME@_t *self)
 ISA_EXPORT int ISA(start)(@NAME@_t *self, const isa_start_t *start)
 {
   const int code = start ? check_start(start) : ISA_OK;
-  if (!self) return ISA_NO_INSTANCE;
+  if (!is_instance(self)) return ISA_NO_INSTANCE;
   if (code) return code;
   if (!start) start = &ABOUT.start;
   clear(self);
@@ -185,8 +192,9 @@ static int check_feed(const isa_feed_t *feed)
 static int check_port(const isa_port_t *port)
 {
   if (!are_finite(port, sizeof *port)) return ISA_NOT_FINITE;
-  return port->inverse_mass < 0.0 || port->supply_pressure < VACUUM ||
-         port->return_pressure < VACUUM ? ISA_BEYOND_RANGE : ISA_OK;
+  return port->supply_pressure < VACUUM || port->return_pressure < VACUUM ||
+         port->inverse_mass < 0.0 ||
+         (!HAS_OWN_LOAD && (port->x0 < LOAD_LOW || port->x0 > LOAD_HIGH)) ? ISA_BEYOND_RANGE : ISA_OK;
 }
 
 ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_t *feed,
@@ -196,7 +204,7 @@ ISA_EXPORT int ISA(tick)(@NAME@_t *self, const isa_port_t *port, const isa_feed_
   static const isa_feed_t held;
   isa_command_t own = command ? *command : none;
   int code = ISA_OK;
-  if (!self || !(port || HAS_OWN_LOAD)) return ISA_NO_INSTANCE;
+  if (!is_instance(self) || !(port || HAS_OWN_LOAD)) return ISA_NO_INSTANCE;
   if (self->diverged) return (int)self->diverged;
   if (port) code = check_port(port);
   if (!code && feed) code = check_feed(feed);
@@ -289,7 +297,7 @@ ISA_EXPORT int ISA(save)(const @NAME@_t *self, void *state, size_t bytes)
   const int64_t t_ns = ISA(time_ns)(self);
   unsigned char *to = state;
   uint64_t sum;
-  if (!self || !state) return ISA_NO_INSTANCE;
+  if (!is_instance(self) || !state) return ISA_NO_INSTANCE;
   if (bytes != STATE_BYTES) return ISA_WRONG_SIZE;
   copy(to, &t_ns, sizeof t_ns);
   to += sizeof t_ns;
@@ -323,7 +331,7 @@ ISA_EXPORT int ISA(restore)(@NAME@_t *self, const void *state, size_t bytes)
   const unsigned char *from = state;
   int64_t t_ns;
   int code;
-  if (!self || !state) return ISA_NO_INSTANCE;
+  if (!is_instance(self) || !state) return ISA_NO_INSTANCE;
   if (bytes != STATE_BYTES) return ISA_WRONG_SIZE;
   code = check_state(from);
   if (code) return code;
@@ -377,7 +385,7 @@ ISA_EXPORT const char *ISA(message)(int code)
   if (code > 0 && code <= (int)COUNT(STATE_NAMES)) return STATE_NAMES[code - 1];
   switch (code) {
     case ISA_OK: return "done";
-    case ISA_NO_INSTANCE: return "the instance, or a pointer that is needed, is NULL";
+    case ISA_NO_INSTANCE: return "no instance was created in this memory, or a pointer is NULL";
     case ISA_NOT_FINITE: return "a number is not finite";
     case ISA_BEYOND_RANGE: return "a number of the setpoint, start, port or feed is beyond its range";
     case ISA_UNKNOWN_KIND: return "kinds or is_enabled of the command do not exist";

@@ -25,7 +25,7 @@
 
 enum isa_code {
   ISA_OK = 0,
-  ISA_NO_INSTANCE = -1,    /* the instance, or a pointer that is needed, is NULL */
+  ISA_NO_INSTANCE = -1,    /* no instance was created in this memory, or a pointer is NULL */
   ISA_NOT_FINITE = -2,     /* a number is NaN or infinite */
   ISA_BEYOND_RANGE = -3,   /* a number of a setpoint, start, port or feed is beyond its range */
   ISA_UNKNOWN_KIND = -4,   /* bits of a command, or its is_enabled, that do not exist */

@@ -78,6 +78,22 @@ def test_units_and_ranges_of_references_are_in_the_description(unit, cases):
         f'spool, {-spool.high:g} to {spool.high:g} m; not used in the others')
 
 
+def test_a_load_far_beyond_the_stroke_is_left_out(unit):
+    """By more than half of 0.1 m, as the description says; within it the load is taken."""
+    own = unit.variables['port.position']
+    assert (float(own.min), float(own.max)) == (-0.05, 0.15000000000000002)
+    unit.initialise()
+    before = unit.get('port.position')
+    for beyond in (-0.0501, 0.1501, 50.0):
+        unit.set({'port.position': beyond})
+    texts = [text for _, text in unit.messages]
+    assert len(texts) == 3 and texts[2].startswith('port.position = 50 m, must be ')
+    unit.step()
+    assert unit.get('port.position') == before != 0.06
+    unit.set({'port.position': 0.06})
+    assert unit.get('port.position') == 0.06 and len(unit.messages) == 3
+
+
 def test_a_negative_inverse_mass_is_left_out(unit):
     unit.initialise({'port.inverse_mass': 0.02})
     unit.set({'port.inverse_mass': -1e-6})

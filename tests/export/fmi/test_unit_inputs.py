@@ -126,7 +126,7 @@ def on_port(cases, version, tmp_path):
 def test_what_has_diverged_says_so_and_ends(on_port):
     unit = on_port()
     unit.step(3)
-    unit.set({'port.position': 1e300})
+    unit.set({'port.velocity': 1e300})
     refused(unit, ERROR, 'is not finite', unit.step)
     assert unit.messages[0][1].startswith('t = 0.00')
     unit.n_steps = round(unit.reached / STEP)
