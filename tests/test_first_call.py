@@ -1,7 +1,7 @@
 """The first call of `./isa`: its environment is made with progress, by a pip of the test."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 import os
 from pathlib import Path
 import pty
@@ -65,6 +65,7 @@ class Call:
         self.process = subprocess.Popen(
             [clone / 'isa', 'words'], cwd=clone, stdout=subprocess.PIPE, stderr=write_end,
             text=True, env={'PATH': f'{clone / "bin"}:{os.environ["PATH"]}', 'TERM': 'dumb'},
+            start_new_session=True,
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         os.close(write_end)
 
@@ -80,13 +81,14 @@ class Call:
 
 @contextmanager
 def called(clone: Path, on_terminal: bool) -> Iterator[Call]:
-    """Run the first call while the context lasts."""
+    """Run the first call while the context lasts; the pip that waits for the test ends too."""
     error, write_end = pty.openpty() if on_terminal else os.pipe()
     call = Call(clone, error, write_end)
     try:
         yield call
     finally:
-        call.process.kill()
+        with suppress(ProcessLookupError):
+            os.killpg(call.process.pid, signal.SIGKILL)
         call.process.wait()
         os.close(error)
 
