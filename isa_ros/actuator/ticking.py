@@ -5,7 +5,7 @@ from typing import NamedTuple
 from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.core.bound import Bound
-from isa_ros.core.kernel import Entry, entry_of, kernel
+from isa_ros.core.kernel import Entry, entry_of, part_of_kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 import numpy as np
@@ -24,7 +24,7 @@ class Ticked(NamedTuple):
     """Of the actuators."""
 
 
-@kernel
+@part_of_kernel
 def group_tick(own):
     """
     Advance all by one tick and move the clock on; ``own`` is a `Ticked`.
