@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.surroundings.bodies.leg.inertial import read_imu
 from isa_ros.surroundings.bodies.leg.motion import continuous
@@ -49,7 +49,7 @@ class LegTick(NamedTuple):
     """Of the units, (u, 6)."""
 
 
-@kernel
+@part_of_kernel
 def fill_ports(own):
     """Release the leg if it is time, and fill its ports for the next tick; return 0."""
     if is_released(own.clock[0]):
@@ -78,7 +78,7 @@ def show(own):
     return 0
 
 
-@kernel
+@part_of_kernel
 def advance(own):
     """Advance by one tick; return 1 + the place of the first state that is not finite, or 0."""
     clock, rows = own.clock[0], own.rows

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from isa_ros.core.kernel import kernel
+from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.surroundings.bodies.robot.motion import tree_of
 from isa_ros.surroundings.bodies.robot.port_kernel import (
@@ -62,7 +62,7 @@ class RobotTick(NamedTuple):
     """Places in the sample that are 1 when a contact ends the run, int64."""
 
 
-@kernel
+@part_of_kernel
 def fill_ports(own):
     """Release the robot if it is time, and fill its ports for the next tick; return 0."""
     if is_released(own.clock[0]):
@@ -95,7 +95,7 @@ def show(own):
     return 0
 
 
-@kernel
+@part_of_kernel
 def advance(own):
     """
     Advance by one tick.
