@@ -8,11 +8,18 @@ that nothing shorter guards, as processes, a restored run or a real master. To m
 
     ./isa test -n 0 -m 'not slow and not linter' --junitxml=build/times.xml
     python -m tests.quick build/times.xml
+
+A fixture that several tests share is made by the first of them. Without that one the next makes it
+and takes as long, until what is left is measured too and nothing is added:
+
+    ./isa test --quick -n 0 -m 'not linter' --junitxml=build/times.xml
+    python -m tests.quick --more build/times.xml
 """
 
+from argparse import ArgumentParser
 from collections.abc import Iterator, Mapping
+import math
 from pathlib import Path
-import sys
 from xml.etree import ElementTree
 
 import pytest
@@ -51,9 +58,9 @@ def text_of(spent: Mapping[str, float], kept: set[str]) -> str:
     return '\n'.join([*sorted(kept), *sorted(names), ''])
 
 
-def main(report: Path) -> None:
-    """Write `FILE` anew from a report; what is never left out stays."""
-    spent: dict[str, float] = {}
+def main(report: Path, *, is_more: bool = False) -> None:
+    """Write `FILE` anew from a report, or add to it; what is never left out stays."""
+    spent = dict.fromkeys(left_out(), math.inf) if is_more else {}
     for name, seconds in times(report):
         spent[name] = max(seconds, spent.get(name, 0.0))
     kept = {line for line in FILE.read_text(encoding='utf-8').splitlines() if line[0] == '+'}
@@ -61,4 +68,8 @@ def main(report: Path) -> None:
 
 
 if __name__ == '__main__':
-    main(Path(sys.argv[1]))
+    parser = ArgumentParser(prog='python -m tests.quick')
+    parser.add_argument('report', type=Path, help='of pytest, --junitxml')
+    parser.add_argument('--more', action='store_true', help='add to what is left out')
+    given = parser.parse_args()
+    main(given.report, is_more=given.more)

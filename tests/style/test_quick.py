@@ -52,6 +52,18 @@ def test_what_takes_long_with_one_of_its_parameters_is_left_out(
     assert quick.left_out() == {'plant test_it_moves', 'test_controller test_it_waits'}
 
 
+def test_what_takes_long_without_others_is_left_out_too(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It makes what they shared; they are not in the report, and are left out as before."""
+    monkeypatch.setattr(quick, 'FILE', tmp_path / 'quick.txt')
+    quick.FILE.write_text('+ros test_one_of_its_kind\ntick test_made_what_others_take\n')
+    (tmp_path / 'times.xml').write_text(REPORT)
+    quick.main(tmp_path / 'times.xml', is_more=True)
+    assert quick.FILE.read_text() == (
+        '+ros test_one_of_its_kind\nplant test_it_moves\n'
+        'test_controller test_it_waits\ntick test_made_what_others_take\n')
+
+
 def test_a_test_is_left_out_by_its_name(item: pytest.Item) -> None:
     assert quick.is_quick(item, {'tick test_a_test_is_left_out_by_its_name'})
     assert not quick.is_quick(item, {'style test_a_test_is_left_out_by_its_name'})
