@@ -119,6 +119,8 @@ def file_to_write(text: str) -> Path:
     path = Path(text)
     if path.is_dir():
         raise argparse.ArgumentTypeError(f'{text} is a directory, must be a file')
+    if path.exists() and not path.is_file():
+        raise argparse.ArgumentTypeError(f'{text} is a device or a pipe, must be a file')
     if not path.parent.is_dir():
         raise argparse.ArgumentTypeError(f'{text}: the directory {path.parent} does not exist')
     if not os.access(path if path.exists() else path.parent, os.W_OK):

@@ -1,6 +1,8 @@
 """Types of arguments: numbers as they are meant, and files that may be replaced."""
 
 from argparse import ArgumentTypeError
+from collections.abc import Callable
+import os
 from pathlib import Path
 
 from isa_ros.cli.main import main, make_parser
@@ -33,6 +35,17 @@ def test_a_file_of_another_kind_is_not_replaced(
     with pytest.raises(ArgumentTypeError, match=f'already exists and {what}, so it is not over'):
         of(str(path))
     assert path.read_bytes() == foreign
+
+
+@pytest.mark.parametrize('of', [json_to_write, figure_to_write, like_before('of isa tune', b'#')])
+def test_a_pipe_is_neither_read_nor_replaced(tmp_path: Path, of: Callable[[str], Path]) -> None:
+    """Who writes to /dev/null with every right has it afterwards; no reader waits for a writer."""
+    path = tmp_path / 'pipe'
+    os.mkfifo(path)
+    for name in (path, Path(os.devnull)):
+        with pytest.raises(ArgumentTypeError, match=f'{name} is a device or a pipe, must be a f'):
+            of(str(name))
+    assert path.is_fifo()
 
 
 @pytest.mark.parametrize('command', [
