@@ -83,11 +83,7 @@ def describe(name: str, preset: str | None = None, variants: Sequence[str] = (),
         section, place = leg_section(name, 'leg')
         section = merge(section, written(changed({}, values, name), Place(SET)))
         return _table(name, rows(build(LegSheet, section, place), section))
-    try:
-        path = find(name, CONFIG)
-    except ConfigError as error:
-        known = ', '.join([*model_names(), *leg_names()])
-        raise ConfigError(f'{error}; models and legs: {known}') from error
+    path = find(name, CONFIG, {'models': model_names(), 'legs': leg_names()})
     return _described(read(path), Place.of(path), values)
 
 

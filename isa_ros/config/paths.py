@@ -4,9 +4,12 @@ Paths of shipped files: in a clone beside the package, installed under share/isa
 A name on the command line is the user's own file if that exists, else a shipped one.
 """
 
+from collections.abc import Mapping, Sequence
+from itertools import chain
 import os
 from pathlib import Path
 import sys
+from types import MappingProxyType
 
 from isa_ros.core.suggest import near_names
 from isa_ros.errors import ConfigError
@@ -61,11 +64,14 @@ def drawings(directory: str) -> list[str]:
                    for path in (share / directory).glob('*.*')})
 
 
-def find(name: str, directory: str) -> Path:
+def find(
+        name: str, directory: str, others: Mapping[str, Sequence[str]] = MappingProxyType({}),
+        ) -> Path:
     """
     Return the user's file ``name``, or else the shipped file of that name.
 
-    The ending .yaml may be left out for shipped files.
+    The ending .yaml may be left out for shipped files. ``others`` are names by what they are, as
+    models, that would have done as well: for the message.
 
     Raises
     ------
@@ -80,6 +86,9 @@ def find(name: str, directory: str) -> Path:
     for known in (name, f'{name}.yaml'):
         if known in files:
             return files[known]
-    near = near_names(name, [*files, *(known.removesuffix('.yaml') for known in files)])
+    written = files if name.endswith('.yaml') else [known.removesuffix('.yaml') for known in files]
+    near = near_names(name, chain(written, *others.values()))
+    lists = {'shipped': tuple(files), **others}
     raise ConfigError(f'{name}: no such file; ' + (
-        f'did you mean {near}?' if near else f'shipped: {", ".join(files) or "none"}'))
+        f'did you mean {near}?' if near else
+        '; '.join(f'{what}: {", ".join(known) or "none"}' for what, known in lists.items())))

@@ -113,10 +113,7 @@ def _read(file: str, preset: str | None, variants: Sequence[str]) -> tuple[Tree,
             raise ConfigError(
                 f'{option} is not used: {file} is not a model, and a run file has its own; '
                 f'models: {", ".join(model_names())}')
-    try:
-        path = find(file, CONFIG)
-    except ConfigError as error:
-        raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
+    path = find(file, CONFIG, {'models': model_names()})
     return read(path), Place.of(path)
 
 

@@ -59,7 +59,7 @@ def test_a_circuit_is_refused_for_a_unit(tmp_path, capsys):
 def test_what_is_refused(tmp_path, capsys):
     out = tmp_path / 'out'
     for arguments, line in (
-            (('isa_v6', '--c'), 'isa: isa_v6: no such file; shipped: '),
+            (('isa_v6', '--c'), 'isa: isa_v6: no such file; did you mean isa_v5 or isa_v2?'),
             (('leg:kf', '--c'), "isa: 'kf' is not an actuator of leg; did you mean kfe?\n"),
             (('isa_v5', '--c', '--compiler', 'no-cc'), 'isa: --compiler no-cc: no such C compi'),
             (('isa_v5', '--c', '--target', 'arm'), 'isa: --target arm, valid: x86-64-v3, '),

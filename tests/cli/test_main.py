@@ -88,7 +88,7 @@ def test_wrong_usage_is_one_line_and_2(
 
 
 @pytest.mark.parametrize('arguments, expected', [
-    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: cooled_station.yaml, crane.yaml'),
+    (['params', 'isa_v6'], 'isa: isa_v6: no such file; did you mean isa_v5 or isa_v2?'),
     (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is not a preset of isa_v5"),
     (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: cooled_station.yaml'),
     (['bringup', 'leg', '--scenario', 'fly'],

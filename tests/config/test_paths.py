@@ -36,6 +36,23 @@ def test_a_file_with_a_slip_is_answered_with_the_nearest(name: str, nearest: str
         paths.find(name, paths.CONFIG)
 
 
+def test_names_that_would_do_as_well_are_named() -> None:
+    others = {'models': ['isa_v2', 'isa_v5'], 'legs': ['hyq']}
+    with pytest.raises(ConfigError, match=r'^isav5: no such file; did you mean isa_v5 or isa_v2\?$'):
+        paths.find('isav5', paths.CONFIG, others)
+    with pytest.raises(ConfigError, match=r'winch\.yaml; models: isa_v2, isa_v5; legs: hyq$'):
+        paths.find('zzz', paths.CONFIG, others)
+
+
+def test_a_name_is_suggested_as_it_was_written() -> None:
+    for ending in ('', '.yaml'):
+        with pytest.raises(ConfigError) as caught:
+            paths.find(f'hyq_lag{ending}', paths.CONFIG)
+        names = str(caught.value).partition('; did you mean ')[2].rstrip('?').split(' or ')
+        assert names[0] == f'hyq_leg{ending}'
+        assert [name.endswith('.yaml') for name in names] == [bool(ending)] * len(names)
+
+
 def test_an_installed_share_directory_is_found(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As after `colcon build` and sourcing: the package is not in a clone."""

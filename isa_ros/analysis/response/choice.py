@@ -96,12 +96,8 @@ def _of_file(choice: Choice) -> tuple[Tree, Place]:
             raise ConfigError(
                 f'{option} is not used: {choice.name} is no model, a run file says it itself; '
                 f'models: {", ".join(model_names())}')
-    try:
-        path = find(choice.name, CONFIG)
-    except ConfigError as error:
-        if choice.name.endswith('.yaml'):
-            raise
-        raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
+    models = () if choice.name.endswith('.yaml') else model_names()
+    path = find(choice.name, CONFIG, {'models': models} if models else {})
     return read(path), Place.of(path)
 
 

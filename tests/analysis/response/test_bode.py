@@ -97,7 +97,7 @@ def test_a_blocked_torque_step_has_its_figures(torque):
     (['bode', 'leg.yaml'], 'several actuators, --actuator must name one: '),
     (['bode', 'leg.yaml', '--actuator', 'x'], "leg.yaml: no actuator 'x'; valid: "),
     (['bode', 'leg.yaml', '--preset', 'table_4'], '--preset is not used'),
-    (['bode', 'isa_v9'], 'isa_v9: no such file; shipped: '),
+    (['bode', 'isa_v9'], 'isa_v9: no such file; did you mean isa_v5 or isa_v2?'),
     (['step', 'isa_v5', '--duration', '1000'], '--duration = 1000 s, must be 0.01 to 100 s'),
 ])
 def test_what_cannot_be_measured_is_one_line_and_2(arguments, expected, capsys):

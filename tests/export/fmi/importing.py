@@ -33,8 +33,8 @@ class Unit:
         self.slave: Any = make(
             guid=own.guid, unzipDirectory=str(directory), instanceName='one',
             modelIdentifier=own.coSimulation.modelIdentifier)
-        self._callbacks: Any = None
-        self._instantiate()
+        self.callbacks: Any = None
+        self.instantiate()
         self.begin, self.n_steps = begin, 0
         if not waits:
             self.initialise(start)
@@ -43,13 +43,14 @@ class Unit:
         text = message.decode() if isinstance(message, bytes) else message
         self.messages.append((status, text.replace('%%', '%')))
 
-    def _instantiate(self) -> None:
+    def instantiate(self) -> None:
+        """Make the instance, once more if it was made; what it says is added to ``messages``."""
         if self.is_3:
-            self._callbacks = fmi3.fmi3LogMessageCallback(
+            self.callbacks = fmi3.fmi3LogMessageCallback(
                 lambda _, status, category, message: self._log(status, message))
-            self.slave.instantiate(logMessage=self._callbacks)
+            self.slave.instantiate(logMessage=self.callbacks)
             return
-        own = self._callbacks = fmi2.fmi2CallbackFunctions()
+        own = self.callbacks = fmi2.fmi2CallbackFunctions()
         own.logger = fmi2.fmi2CallbackLoggerTYPE(
             lambda _, instance, status, category, message: self._log(status, message))
         own.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)

@@ -1,5 +1,7 @@
 """The life of a unit: phases, steps, time, types and constants; as fmpy sees it."""
 
+from ctypes import byref, c_bool, c_size_t, c_void_p
+
 import pytest
 
 pytest.importorskip('fmpy')
@@ -72,10 +74,39 @@ def test_phases_are_in_their_order(make):
 
 
 def test_the_token_of_another_unit_is_refused(case, version, tmp_path):
+    unit = Unit(case.paths[version], tmp_path / 'unit', waits=True)
+    token = unit.slave.guid
+    unit.slave.guid = f'{token[:-1]}_'
     with pytest.raises(Exception, match='[Ii]nstantiate'):
-        own = Unit(case.paths[version], tmp_path / 'unit', waits=True).slave
-        own.guid = f'{own.guid[:-1]}_'
-        own.instantiate()
+        unit.instantiate()
+    assert unit.messages == [
+        (ERROR, f'another token (guid) than {token} is not possible with this unit')]
+    unit.slave.guid = token
+    unit.instantiate()
+    assert len(unit.messages) == 1
+
+
+def test_what_is_no_cosimulation_is_refused_when_it_is_made(make):
+    unit = make(waits=True)
+    library, token = unit.slave.dll, unit.slave.guid.encode()
+    asked = {'model exchange': lambda: library.fmi2Instantiate(
+        b'one', 0, token, b'', byref(unit.callbacks), 0, 0)}
+    if unit.is_3:
+        none, no = c_void_p(), c_bool(False)
+        named = (b'one', token, b'', no, no)
+        own = (none, unit.callbacks, none)
+        asked = {
+            'model exchange': lambda: library.fmi3InstantiateModelExchange(*named, *own[:2]),
+            'scheduled execution': lambda: library.fmi3InstantiateScheduledExecution(
+                *named, *own, none, none),
+            'event mode': lambda: library.fmi3InstantiateCoSimulation(
+                *named, c_bool(True), no, none, c_size_t(0), *own),
+            'an intermediate update': lambda: library.fmi3InstantiateCoSimulation(
+                *named, no, no, none, c_size_t(1), *own)}
+    for what, make_it in asked.items():
+        assert not make_it()
+        assert unit.messages.pop() == (ERROR, f'{what} is not possible with this unit')
+    assert not unit.messages
 
 
 def test_types_and_references_are_checked(make):

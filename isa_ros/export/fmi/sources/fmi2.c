@@ -7,10 +7,9 @@
 #include <stdlib.h>
 
 /* The message is the logger's format: many importers show it without looking for arguments. */
-static void report(const unit_t *unit, enum status status, const char *category,
+static void report(const struct importer *own, enum status status, const char *category,
                    const char *message)
 {
-  const struct importer *own = unit_importer(unit);
   char format[2 * UNIT_MESSAGE_BYTES], *to = format;
   if (!own->logger) return;
   for (const char *from = message; *from; from++) {
@@ -44,10 +43,11 @@ EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String 
                                      fmi2Boolean visible, fmi2Boolean logging)
 {
   (void)resources, (void)visible, (void)logging;
-  if (type != fmi2CoSimulation || !name || !token || !functions) return NULL;
+  if (!name || !token || !functions) return NULL;
   const struct importer importer = {name, functions->componentEnvironment,
                                     (void (*)(void))functions->logger, report};
-  return unit_create(&importer, token);
+  return type == fmi2CoSimulation ? unit_create(&importer, token)
+                                  : unit_refuse_creation(&importer, "model exchange");
 }
 
 EXPORT void fmi2FreeInstance(fmi2Component c)

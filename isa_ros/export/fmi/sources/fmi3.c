@@ -4,12 +4,11 @@
 
 #include <stdlib.h>
 
-static void report(const unit_t *unit, enum status status, const char *category,
+static void report(const struct importer *to, enum status status, const char *category,
                    const char *message)
 {
-  const struct importer *own = unit_importer(unit);
-  if (own->logger)
-    ((fmi3LogMessageCallback)own->logger)(own->environment, (fmi3Status)status, category, message);
+  if (to->logger)
+    ((fmi3LogMessageCallback)to->logger)(to->environment, (fmi3Status)status, category, message);
 }
 
 EXPORT const char *fmi3GetVersion(void)
@@ -33,18 +32,26 @@ EXPORT fmi3Instance fmi3InstantiateCoSimulation(
 {
   (void)resources, (void)visible, (void)logging, (void)may_return_early, (void)intermediate;
   (void)update;
-  if (!name || !token || has_events || n_intermediate) return NULL;
+  if (!name || !token) return NULL;
   const struct importer importer = {name, environment, (void (*)(void))logger, report};
+  if (has_events) return unit_refuse_creation(&importer, "event mode");
+  if (n_intermediate) return unit_refuse_creation(&importer, "an intermediate update");
   return unit_create(&importer, token);
+}
+
+static fmi3Instance refuse(fmi3String name, fmi3InstanceEnvironment environment,
+                           fmi3LogMessageCallback logger, const char *what)
+{
+  const struct importer importer = {name, environment, (void (*)(void))logger, report};
+  return unit_refuse_creation(&importer, what);
 }
 
 EXPORT fmi3Instance fmi3InstantiateModelExchange(
   fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
   fmi3Boolean logging, fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger)
 {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment;
-  (void)logger;
-  return NULL;
+  (void)token, (void)resources, (void)visible, (void)logging;
+  return refuse(name, environment, logger, "model exchange");
 }
 
 EXPORT fmi3Instance fmi3InstantiateScheduledExecution(
@@ -53,9 +60,9 @@ EXPORT fmi3Instance fmi3InstantiateScheduledExecution(
   fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
   fmi3UnlockPreemptionCallback unlock)
 {
-  (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment;
-  (void)logger, (void)update, (void)lock, (void)unlock;
-  return NULL;
+  (void)token, (void)resources, (void)visible, (void)logging, (void)update, (void)lock;
+  (void)unlock;
+  return refuse(name, environment, logger, "scheduled execution");
 }
 
 EXPORT void fmi3FreeInstance(fmi3Instance c)

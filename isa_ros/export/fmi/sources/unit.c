@@ -5,23 +5,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum status unit_say(const unit_t *unit, enum status status, const char *message)
+static void say(const struct importer *importer, enum status status, const char *message)
 {
   static const char *const CATEGORIES[] = {"logStatusOK", "logStatusWarning", "logStatusDiscard",
                                            "logStatusError"};
-  if (unit->importer.report)
-    unit->importer.report(unit, status, CATEGORIES[status], message);
+  importer->report(importer, status, CATEGORIES[status], message);
+}
+
+enum status unit_say(const unit_t *unit, enum status status, const char *message)
+{
+  say(&unit->importer, status, message);
   return status;
 }
 
 static enum status worse(enum status one, enum status other)
 {
   return one > other ? one : other;
-}
-
-const struct importer *unit_importer(const unit_t *unit)
-{
-  return &unit->importer;
 }
 
 enum status unit_refuse(const unit_t *unit, const char *what)
@@ -82,12 +81,21 @@ static void set_default(unit_t *unit)
   memcpy(unit->given.handed, DEFAULTS, sizeof DEFAULTS);
 }
 
+unit_t *unit_refuse_creation(const struct importer *importer, const char *what)
+{
+  char message[UNIT_MESSAGE_BYTES];
+  snprintf(message, sizeof message, "%s is not possible with this unit", what);
+  say(importer, STATUS_ERROR, message);
+  return NULL;
+}
+
 unit_t *unit_create(const struct importer *importer, const char *token)
 {
   const size_t own = (sizeof(unit_t) + 63) / 64 * 64, actuator = (ISA(size)() + 63) / 64 * 64;
   const size_t name = strlen(importer->name) + 1;
   unit_t *unit;
-  if (strcmp(token, TOKEN) != 0) return NULL;
+  if (strcmp(token, TOKEN) != 0)
+    return unit_refuse_creation(importer, "another token (guid) than " TOKEN);
   unit = calloc(1, own + actuator + name);
   if (!unit) return NULL;
   unit->importer = *importer;

@@ -22,8 +22,10 @@ typedef struct unit unit_t;
 
 #define UNIT_MESSAGE_BYTES 400   /* of the longest message, with its end */
 
+struct importer;
+
 /* Hands a message to the importer; category is one of the model description. */
-typedef void report_t(const unit_t *unit, enum status status, const char *category,
+typedef void report_t(const struct importer *to, enum status status, const char *category,
                       const char *message);
 
 /* What the version of FMI needs for its messages. */
@@ -34,10 +36,12 @@ struct importer {
   report_t *report;
 };
 
+/* Say that an instance is not made for what it was to do; return NULL. */
+unit_t *unit_refuse_creation(const struct importer *importer, const char *what);
+
 /* Make an instance that has not begun; NULL: the token is that of another unit, or no memory. */
 unit_t *unit_create(const struct importer *importer, const char *token);
 void unit_free(unit_t *unit);
-const struct importer *unit_importer(const unit_t *unit);
 
 /* Put all back to where it was after unit_create. */
 enum status unit_reset(unit_t *unit);
