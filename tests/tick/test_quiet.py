@@ -12,10 +12,15 @@ from tests.tick.quietly import advance, bag_of, begun, PATTERNS
 @pytest.mark.parametrize(('name', 'scenario', 'n_ticks'), [
     ('leg', 'drop', 1100), ('rig_linear', None, 1020), ('rig_temperature', 'temperature', 1010),
     ('quadruped', None, 130), ('press', None, 200), ('leg', 'trot_leg', 300),
-    ('rig_rotary', 'wheel_sine', 150)])
+    ('rig_rotary', 'wheel_sine', 150), ('crane_circuit', 'crane_circuit', 200),
+    ('pump_station', 'pump_station', 60), ('warm_stand', 'warm_stand', 150)])
 def test_a_bag_has_the_same_bytes_however_many_ticks_are_in_a_call(
         tmp_path, name, scenario, n_ticks):
-    """With commands, an impact, inertial units, messages of each second and of each tick."""
+    """
+    With commands, an impact, inertial units, messages of each second and of each tick.
+
+    And with lines, and a tank whose oil warms its actuators.
+    """
     run = load(name, scenario=scenario)
     found = [bag_of(tmp_path / str(k), run, n_ticks, pattern)
              for k, pattern in enumerate(PATTERNS)]
