@@ -14,6 +14,7 @@ from argparse import ArgumentParser
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
+import gc
 import multiprocessing
 import os
 from pathlib import Path
@@ -47,6 +48,18 @@ class Job(NamedTuple):
 def make(wanted: Wanted, objects: Objects) -> dict[str, str]:
     """Make the objects of an entry; return why a target has none."""
     return objects.make(wanted.entry)
+
+
+def lower_long() -> None:
+    """
+    Let this process lower kernels only, for as long as it lives.
+
+    What the compiler keeps is seldom looked through for what nobody refers to: an eighth of the
+    time, and 80 MB more.
+    """
+    gc.freeze()
+    gc.set_threshold(100_000, 20, 100)
+    lower_only()
 
 
 @contextmanager
@@ -125,7 +138,7 @@ class Making:
     def run(self, processes: int) -> None:
         """Do all jobs."""
         context = multiprocessing.get_context('spawn')
-        with ProcessPoolExecutor(processes, context, initializer=lower_only) as pool, _ended():
+        with ProcessPoolExecutor(processes, context, initializer=lower_long) as pool, _ended():
             while self._waiting or self._running:
                 while self._waiting and len(self._running) < processes:
                     job = self._waiting.pop()

@@ -15,13 +15,13 @@ import warnings
 from isa_ros.core.bound import run_rounds
 from isa_ros.core.elf import symbols
 from isa_ros.core.kernel_library import address_in
-from isa_ros.core.lowering import lower_only
 from isa_ros.core.objects import own_target, TARGETS
 import pytest
 from scripts import kernel_objects, kernel_rehearsal, make_kernels
 from scripts.kernel_objects import Objects
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
-from scripts.make_kernels import link, main, make, Making, PERIOD_S, Progress
+from scripts.make_kernels import (
+    link, lower_long, main, make, Making, PERIOD_S, Progress)
 from tests.text.terminal import Terminal
 
 ROOT = Path(__file__).parents[2]
@@ -36,7 +36,7 @@ def objects(tmp_path_factory):
 
 def in_lowering(work, *arguments):
     """Return what work gives in a process that lowers kernels and has asked for nothing."""
-    with ProcessPoolExecutor(1, get_context('spawn'), initializer=lower_only) as process:
+    with ProcessPoolExecutor(1, get_context('spawn'), initializer=lower_long) as process:
         return process.submit(work, *arguments).result()
 
 
@@ -186,7 +186,7 @@ class Now:
     """Futures of work that is done at once."""
 
     def __init__(self, processes, context, initializer):
-        assert initializer is lower_only
+        assert initializer is lower_long
 
     def __enter__(self):
         return self
