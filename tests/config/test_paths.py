@@ -38,7 +38,7 @@ def test_a_file_with_a_slip_is_answered_with_the_nearest(name: str, nearest: str
 
 def test_names_that_would_do_as_well_are_named() -> None:
     others = {'models': ['isa_v2', 'isa_v5'], 'legs': ['hyq']}
-    with pytest.raises(ConfigError, match=r'^isav5: no such file; did you mean isa_v5 or isa_v2\?$'):
+    with pytest.raises(ConfigError, match='^isav5: no such file; did you mean isa_v5 or isa_v2.$'):
         paths.find('isav5', paths.CONFIG, others)
     with pytest.raises(ConfigError, match=r'winch\.yaml; models: isa_v2, isa_v5; legs: hyq$'):
         paths.find('zzz', paths.CONFIG, others)
