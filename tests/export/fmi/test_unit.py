@@ -1,6 +1,6 @@
 """The life of a unit: phases, steps, time, types and constants; as fmpy sees it."""
 
-from ctypes import byref, c_bool, c_size_t, c_void_p
+from ctypes import byref
 
 import pytest
 
@@ -89,20 +89,22 @@ def test_the_token_of_another_unit_is_refused(case, version, tmp_path):
 def test_what_is_no_cosimulation_is_refused_when_it_is_made(make):
     unit = make(waits=True)
     library, token = unit.slave.dll, unit.slave.guid.encode()
+
+    def made(function, *given):
+        return function(*given, *(kind() for kind in function.argtypes[len(given):]))
     asked = {'model exchange': lambda: library.fmi2Instantiate(
         b'one', 0, token, b'', byref(unit.callbacks), 0, 0)}
     if unit.is_3:
-        none, no = c_void_p(), c_bool(False)
-        named = (b'one', token, b'', no, no)
-        own = (none, unit.callbacks, none)
+        named, logged = (b'one', token, b'', False, False), (None, unit.callbacks)
         asked = {
-            'model exchange': lambda: library.fmi3InstantiateModelExchange(*named, *own[:2]),
-            'scheduled execution': lambda: library.fmi3InstantiateScheduledExecution(
-                *named, *own, none, none),
-            'event mode': lambda: library.fmi3InstantiateCoSimulation(
-                *named, c_bool(True), no, none, c_size_t(0), *own),
-            'an intermediate update': lambda: library.fmi3InstantiateCoSimulation(
-                *named, no, no, none, c_size_t(1), *own)}
+            'model exchange': lambda: made(
+                library.fmi3InstantiateModelExchange, *named, *logged),
+            'scheduled execution': lambda: made(
+                library.fmi3InstantiateScheduledExecution, *named, *logged),
+            'event mode': lambda: made(
+                library.fmi3InstantiateCoSimulation, *named, True, False, None, 0, *logged),
+            'an intermediate update': lambda: made(
+                library.fmi3InstantiateCoSimulation, *named, False, False, None, 1, *logged)}
     for what, make_it in asked.items():
         assert not make_it()
         assert unit.messages.pop() == (ERROR, f'{what} is not possible with this unit')
