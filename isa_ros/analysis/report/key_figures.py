@@ -22,7 +22,7 @@ SHOWN = 0.1     # MPa, the last digit of a pressure
 TOUCHES = 1.0   # N: a smaller force of the ground is no contact
 HEADER = ('', 'from', 'to', '', 'speed, 1/s', 'peak force', '', 'pressure, MPa',
           'position error', 'force error', 'settled, s', 'ripple', 'oil, l')
-LANDING_HEADER = ('contact', 'landing, s', 'peak in its direction, N', 'at, s', 'in contact')
+LANDING_HEADER = ('contact', 'landing, s', 'peak magnitude, N', 'at, s', 'in contact')
 LEGEND = (
     'speed and peak: greatest magnitudes; pressure: gauge, of the sensors at the valve; behind '
     'hoses also the peak in a chamber where it is higher; error: of reference and measurement, '

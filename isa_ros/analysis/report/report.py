@@ -157,8 +157,13 @@ def _energy(accounts: Accounts | None) -> str:
     parts = parts_table(accounts)
     return ''.join([
         tag('h2', 'Oil and energy'), table(energy_table(accounts)),
-        tag('p', energy_legend(accounts), 'mut'),
-        *([table(parts), tag('p', PARTS_LEGEND, 'mut')] if parts else [])])
+        tag('p', _flowing(energy_legend(accounts)), 'mut'),
+        *([table(parts), tag('p', _flowing(PARTS_LEGEND), 'mut')] if parts else [])])
+
+
+def _flowing(text: str) -> str:
+    """Return the lines of a text as one, since the page breaks its lines itself."""
+    return ' '.join(text.split('\n'))
 
 
 def _picture(name: str, figure: Figure) -> str:

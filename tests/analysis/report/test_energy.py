@@ -48,6 +48,7 @@ def test_text_and_page_have_it(bag, tmp_path):
     assert text[5].startswith('up to t = 0.300 s')
     page = write_report(recorded(bag), tmp_path / 'page.html')[0].read_text()
     assert '<h2>Oil and energy</h2>' in page and '<td>kfe</td>' in page
+    assert 'its shares; rest: relief valves' in page    # no code of the line break of the text
 
 
 def test_the_shares_close_to_a_ten_millionth(drop):

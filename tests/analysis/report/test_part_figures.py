@@ -70,7 +70,7 @@ def test_the_page_has_its_figure_and_its_extremes(
     bag = station.save(tmp_path / 'bag')
     written = write_report(recorded(bag), tmp_path / 'page.html')
     assert 'page_station.png' in [path.name for path in written]
-    assert 'below 0 heat that gas has taken up' in written[0].read_text()
+    assert 'more than at t = 0; return: lost on the way' in written[0].read_text()
     assert text_of(recorded_accounts(Bag(bag))).endswith(PARTS_LEGEND)
     rows = {name: (low, high, unit) for name, low, high, unit in extremes(read_signals(bag))}
     press = station['station/press.pressure'] / 1e6
