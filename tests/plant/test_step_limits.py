@@ -43,3 +43,11 @@ def test_a_light_load_is_too_fast_with_warmer_oil() -> None:
 def test_without_a_bound_it_follows_all() -> None:
     """From -20 celsius on."""
     assert coldest_followed(cylinder(), HEAVY, -20.0) == -math.inf
+
+
+def test_the_plant_keeps_its_values() -> None:
+    """Those at 40 celsius, at which its sheet has them."""
+    plant = cylinder()
+    before = plant.tobytes()
+    assert coldest_followed(plant, HEAVY, -60.0) > -60.0
+    assert plant.tobytes() == before

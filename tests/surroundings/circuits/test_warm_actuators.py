@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.text.yaml_text import read
 from isa_ros.core.oil_properties import thickness
 from isa_ros.errors import ConfigError
 from isa_ros.plant.plant import plant_record
@@ -212,6 +213,43 @@ def test_the_load_of_each_actuator_counts(name: str) -> None:
             f'actuators.{name}.load': {'kind': 'mass', 'inertia': 0.05}}).scenario)
 
 
+@pytest.mark.parametrize('name', ['moved', 'held'])
+def test_the_seals_of_each_actuator_count(name: str) -> None:
+    """Twice the friction is as much as before, -28.3 celsius, with oil half as thick: -23.2."""
+    own = plant_record(SHIPPED.configuration.actuator(name).sheet.plant)[0].thermal.oil
+    assert thickness(-23.2, own) == pytest.approx(0.5 * thickness(-28.27, own), rel=0.01)
+    cold(-25.0)()
+    with pytest.raises(ConfigError, match=r'as cold as -25 .*, must be >= -23\.2 celsius'):
+        Simulation(load('warm_stand', 'warm_stand', changes={
+            'supplies.station.parts.tank.heat.air_celsius': -25.0,
+            f'actuators.{name}.parameters.plant.friction.viscous': 400.0}).scenario)
+
+
+def test_cylinders_of_a_mechanism_get_the_oil_of_the_tank() -> None:
+    """Their load is the body's; they stood at 40 celsius, and take heat of the oil."""
+    tree = read(find('crane', CONFIG))
+    del tree['supply']
+    station = read(find('warm_stand', CONFIG))['supplies']['station']
+    station['parts']['gallery']['oil_volume_l'] = 5.0
+    tree['supplies'] = {'station': station | {'feeds': {'gallery': ['lift', 'tilt']}}}
+    for actuator in tree['actuators'].values():
+        actuator['variants'] = ['thermal']
+    simulation = load(tree).simulation()
+    simulation.step()
+    feeds = simulation.group.feeds
+    assert feeds['is_warm'].tolist() == [1.0, 1.0] and feeds['celsius'].tolist() == [60.0, 60.0]
+    assert (simulation.group.fed['heat'] < 0.0).all()
+
+
+def test_without_a_warm_tank_an_actuator_gives_no_heat() -> None:
+    """Its constant supply takes the heat of its oil, but its reply has none."""
+    simulation = Simulation(load('rig_temperature', 'temperature', duration=0.1).scenario)
+    for _ in range(5):
+        simulation.step()
+    assert (simulation.group._memory.thermals['to_oil'] != 0.0).all()
+    assert not simulation.group.feeds['is_warm'].any() and not simulation.group.fed['heat'].any()
+
+
 def test_a_supply_s_temperature_is_refused_on_a_warm_tank(tmp_path: Path) -> None:
     """Of whichever actuator, and on another supply or a circuit without heat it is not."""
     text = find('warm_stand', CONFIG).read_text(encoding='utf-8').replace(
@@ -233,3 +271,17 @@ def test_a_supply_s_temperature_is_refused_on_a_warm_tank(tmp_path: Path) -> Non
         own = load(run_file, changes={
             **changes, 'actuators.leak.parameters.plant.thermal.supply_celsius': 41.0})
         assert own.configuration.actuator('leak').sheet.plant.thermal.supply_celsius == 41.0
+
+
+def test_it_is_refused_on_a_later_supply() -> None:
+    """On the constant one beside it, which is the first, it is not."""
+    tree = read(find('warm_stand', CONFIG))
+    station = tree['supplies']['station'] | {'feeds': {'gallery': ['moved']}}
+    tree['supplies'] = {
+        'main': {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.1,
+                 'feeds': ['held']}, 'station': station}
+    key = 'parameters.plant.thermal.supply_celsius'
+    with pytest.raises(ConfigError, match=rf'moved\.{key} is not used: station feeds it'):
+        load(tree, changes={f'actuators.moved.{key}': 41.0})
+    own = load(tree, changes={f'actuators.held.{key}': 41.0}).configuration.actuator('held')
+    assert own.sheet.plant.thermal.supply_celsius == 41.0
