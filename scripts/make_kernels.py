@@ -34,6 +34,7 @@ from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, tick, Wanted
 
 PERIOD_S = 1.5          # between two lines
 _REHEARSAL = 30         # size of one, in kernels
+_KNOWN = 0.4            # share done from which on sizes foretell the time: the first are slow
 
 
 class Job(NamedTuple):
@@ -106,7 +107,8 @@ class Progress:
             return
         self._shown = now
         spent = now - self._began
-        rest = f'{spent * self.left / self.done:.0f} s left' if self.done else 'beginning'
+        known = self.done >= _KNOWN * (self.done + self.left) > 0
+        rest = f'{spent * self.left / self.done:.0f} s left' if known else 'beginning'
         text = (f'kernels: {self.made} of {self.total}, {spent:.0f} s, '
                 + ('finished' if is_last else f'{rest}: {", ".join(running)}'))
         if self._line is None:

@@ -153,6 +153,16 @@ def test_progress_says_how_many_and_the_time_left():
         'kernels: 5 of 5, 8 s, finished']
 
 
+@pytest.mark.parametrize(('done', 'rest'), [(0, 'beginning'), (39, 'beginning'), (40, '3 s left')])
+def test_no_time_is_foretold_by_the_first_jobs(done, rest):
+    """They compile what the others share, so that their sizes foretell a multiple of the time."""
+    times, said = iter([50.0, 52.0]), io.StringIO()
+    progress = Progress(said, lambda: next(times))
+    progress.total, progress.done, progress.left = 7, done, 100 - done
+    progress.show(['tick'])
+    assert said.getvalue() == f'kernels: 0 of 7, 2 s, {rest}: tick\n'
+
+
 def test_progress_on_a_terminal_is_one_line():
     times, said = iter([0.0, 2.0, 4.0, 5.0]), Terminal()
     progress = Progress(said, lambda: next(times))
