@@ -186,6 +186,28 @@ def test_profile_velocity_brakes_ahead_of_the_limit(rig):
     assert master.inputs[POSITION] < start + 5000 + 1000
 
 
+def test_profile_velocity_says_that_the_limit_takes_its_speed(rig):
+    """From the tick on in which 100 mm/s could no longer stop, 5 mm ahead: v^2 / 2d + v T / 2."""
+    master = profiled(rig, PV)
+    start = master.upload(0x6062)
+    master.download(0x607D, 2, start + 20_000)
+    master.outputs[0x60FF, 0] = 100_000
+    found = []
+    for _ in range(500):
+        before = master.upload(0x6062)
+        found.append((before, bool(master.cycle(ENABLE) & LIMITED)))
+    assert found[-1] == (start + 20_000, True)
+    for place, is_limited in found:
+        if abs(place - (start + 14_950)) > 1:
+            assert is_limited == (place > start + 14_950)
+    master.outputs[0x60FF, 0] = -50_000     # away from it
+    assert not master.cycle(ENABLE) & LIMITED
+    master.cycle(ENABLE)
+    master.download(0x607D, 2, start + 10_000)      # the reference is beyond it now
+    master.outputs[0x60FF, 0] = 10_000
+    assert master.cycle(ENABLE) & LIMITED
+
+
 @pytest.mark.parametrize('mode', [PP, PV, CSP, CSV])
 @pytest.mark.parametrize(('option', 'rate'), [(1, 1000), (2, None)])
 def test_a_halt_brakes_and_goes_on(rig, mode, option, rate):

@@ -133,7 +133,11 @@ class Motions:
         velocity = self._si(TARGET_VELOCITY)
         least, largest = self._range
         if velocity:
-            self._move(largest if velocity > 0.0 else least, self._speed(abs(velocity)))
+            limit, speed = largest if velocity > 0.0 else least, self._speed(abs(velocity))
+            is_beyond = (limit - self.position) * velocity <= 0.0
+            self._limiter.is_limited |= is_beyond or speed > self._trajectory.braked(
+                limit, self._si(objects.DECELERATION))
+            self._move(limit, speed)
         else:
             self._trajectory.stop(self._si(objects.DECELERATION))
             self._hold_in_range()

@@ -24,9 +24,7 @@ class Trajectory:
             self, target: float, speed: float, acceleration: float, deceleration: float) -> None:
         """Move for a tick; ``speed`` >= 0, both accelerations > 0."""
         distance, step = target - self.position, self._step
-        braking = deceleration * (
-            math.sqrt(0.25 * step * step + 2.0 * abs(distance) / deceleration) - 0.5 * step)
-        wanted = math.copysign(min(speed, braking), distance)
+        wanted = math.copysign(min(speed, self.braked(target, deceleration)), distance)
         speeds_up = wanted * self.velocity >= 0.0 and abs(wanted) > abs(self.velocity)
         change = (acceleration if speeds_up else deceleration) * step
         self.velocity = min(max(wanted, self.velocity - change), self.velocity + change)
@@ -35,6 +33,12 @@ class Trajectory:
             self.position, self.velocity = target, 0.0
         else:
             self.position += self.velocity * step
+
+    def braked(self, target: float, deceleration: float) -> float:
+        """Return the largest speed, >= 0, that just stops at ``target``."""
+        distance, step = abs(target - self.position), self._step
+        return deceleration * (
+            math.sqrt(0.25 * step * step + 2.0 * distance / deceleration) - 0.5 * step)
 
     def stop(self, deceleration: float) -> None:
         """Brake for a tick; ``deceleration`` > 0."""
