@@ -9,7 +9,7 @@ node that took its own frame for an RPDO would command itself.
 from collections.abc import Sequence
 
 from isa_ros.fieldbus.device.abort import (
-    INCOMPATIBLE, OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
+    INCOMPATIBLE, NO_DATA, OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
 from isa_ros.fieldbus.device.can_identifiers import EXTENDED, INVALID, is_restricted, LARGEST
 from isa_ros.fieldbus.device.canopen_objects import (
     CANOPEN, COB_ID, CYCLE_PERIOD, EMERGENCY_ID, INHIBIT_TIME, RECEIVE_MAPPINGS,
@@ -67,6 +67,8 @@ class Communication:
         entry = self.table.entry(index, subindex)
         if not entry.is_readable:
             raise SdoAbort(WRITE_ONLY)
+        if index == ERROR_FIELD and subindex > self.value(ERROR_FIELD):
+            raise SdoAbort(NO_DATA)
         return entry.data_type.pack(self._values[index, subindex])
 
     def write(self, index: int, subindex: int, data: bytes, *, is_preoperational: bool) -> None:

@@ -1,6 +1,6 @@
 """Errors of a node: emergency messages (EMCY), the error register and the history 0x1003."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 import struct
 
 from isa_ros.fieldbus.canopen.communication import Communication
@@ -63,10 +63,20 @@ class NodeErrors:
 
     def end(self, code: int, source: int, *, is_sent: bool) -> None:
         """End an error of communication; a message without error says that none is left."""
-        if (code, source) in self._present:
+        if self.is_present(code, source):
             self._present.remove((code, source))
             if not self.register:
                 self._report(NO_ERROR, b'', is_sent)
+
+    def end_others(self, code: int, sources: Collection[int], *, is_sent: bool) -> None:
+        """End the errors with a code that are about none of ``sources``."""
+        present = {source for one, source in self._present if one == code}
+        for source in sorted(present.difference(sources)):
+            self.end(code, source, is_sent=is_sent)
+
+    def is_present(self, code: int, source: int) -> bool:
+        """Return whether an error of communication has begun and not ended."""
+        return (code, source) in self._present
 
     def _report(self, code: int, data: bytes, is_sent: bool) -> None:
         if code != NO_ERROR:

@@ -27,10 +27,15 @@ class Guarding:
         self._life_ns = guard_ms * factor * _NS_PER_MS
         self._is_watched = False
 
+    @property
+    def is_on(self) -> bool:
+        """Return whether it has a life time."""
+        return self._life_ns > 0
+
     def answer(self, state: int) -> bytes:
         """Return the answer of a node in this state to a request."""
         toggle, self._toggle = self._toggle, self._toggle ^ _TOGGLE
-        self._silent_ns, self._is_watched = 0, self._life_ns > 0
+        self._silent_ns, self._is_watched = 0, self.is_on
         return bytes([state | toggle])
 
     def is_lost(self, step_ns: int) -> bool:

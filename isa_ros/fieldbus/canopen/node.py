@@ -261,13 +261,11 @@ class Node:
         overdue = [pdo for pdo in self.receive if pdo.is_on and pdo.is_overdue(self._step_ns)]
         for pdo in overdue:
             self.errors.begin(PDO_OVERDUE, pdo.mapping - RECEIVE_MAPPINGS + 1, is_sent=True)
-        lost = self._consumed.lost(self._step_ns)
+        lost = (self._consumed.lost(self._step_ns)
+                + [self.number] * self._guarding.is_lost(self._step_ns))
         for node in lost:
             self.errors.begin(HEARTBEAT_LOST, node, is_sent=True)
-        is_unguarded = self._guarding.is_lost(self._step_ns)
-        if is_unguarded:
-            self.errors.begin(HEARTBEAT_LOST, self.number, is_sent=True)
-        if overdue or lost or is_unguarded:
+        if overdue or lost:
             self.lose()
 
     def beat(self, now: float) -> float | None:
@@ -297,3 +295,5 @@ class Node:
             self._consumed.set_watched(self.communication.values(index))
         elif index == ERROR_FIELD:
             self.errors.clear_history()
+        watched = self._consumed.nodes() + [self.number] * self._guarding.is_on
+        self.errors.end_others(HEARTBEAT_LOST, watched, is_sent=self.is_talking)

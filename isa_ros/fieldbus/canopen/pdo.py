@@ -56,8 +56,6 @@ class ReceivePdo(Pdo):
 
     def __init__(self, parameters: int, mapping: int) -> None:
         super().__init__(parameters, mapping)
-        self.has_wrong_length = False
-        """Whether the last one had another length than its mapping."""
         self._waiting: bytes | None = None
         self._silent_ns = 0
         self._is_watched = False
@@ -66,7 +64,7 @@ class ReceivePdo(Pdo):
         """Take the parameters; its timer begins with the first one that arrives."""
         super().begin(communication, device)
         self._waiting = None
-        self._is_watched = self.has_wrong_length = False
+        self._is_watched = False
 
     def take(self, data: bytes, device: BusDevice) -> None:
         """Take data of at least its length: for the next SYNC, or at once."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from isa_ros.fieldbus.canopen.errors import (
-    NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT)
+    NO_ERROR, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT)
 from isa_ros.fieldbus.canopen.pdo import ReceivePdo
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.canopen_objects import RECEIVE_MAPPINGS
@@ -17,17 +17,15 @@ def pdo_handler(pdo: ReceivePdo, device: BusDevice, errors: NodeErrors) -> Handl
     number = pdo.mapping - RECEIVE_MAPPINGS + 1
 
     def take(data: bytes) -> bool:
-        if len(data) != pdo.size:
-            if not pdo.has_wrong_length:
-                code = PDO_TOO_SHORT if len(data) < pdo.size else PDO_TOO_LONG
-                errors.begin(code, number, is_sent=True)
-            pdo.has_wrong_length = True
-            if len(data) < pdo.size:
-                return False
-        elif pdo.has_wrong_length:
-            pdo.has_wrong_length = False
-            for code in (PDO_TOO_SHORT, PDO_TOO_LONG):
-                errors.end(code, number, is_sent=True)
+        code = (PDO_TOO_SHORT if len(data) < pdo.size
+                else PDO_TOO_LONG if len(data) > pdo.size else NO_ERROR)
+        if code and not errors.is_present(code, number):
+            errors.begin(code, number, is_sent=True)
+        for other in (PDO_TOO_SHORT, PDO_TOO_LONG):
+            if other != code:
+                errors.end(other, number, is_sent=True)
+        if code == PDO_TOO_SHORT:
+            return False
         errors.end(PDO_OVERDUE, number, is_sent=True)
         pdo.take(data, device)
         return False

@@ -34,6 +34,7 @@ GENERAL = 0x08000000
 NOT_TRANSFERABLE = 0x08000020
 LOCAL_CONTROL = 0x08000021
 WRONG_STATE = 0x08000022
+NO_DATA = 0x08000024
 
 MEANINGS: Mapping[int, str] = {
     TOGGLE_BIT: 'toggle bit not alternated',
@@ -64,6 +65,7 @@ MEANINGS: Mapping[int, str] = {
     NOT_TRANSFERABLE: 'data cannot be transferred or stored to the application',
     LOCAL_CONTROL: 'data cannot be transferred or stored because of local control',
     WRONG_STATE: 'data cannot be transferred or stored in the present state of the device',
+    NO_DATA: 'no data available',
 }
 """Meaning of each code."""
 

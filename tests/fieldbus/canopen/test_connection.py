@@ -54,6 +54,21 @@ def test_a_pulled_cable_leaves_the_state_until_the_node_misses_its_master(master
     assert master.read(0x1003, 1) == b'\x30\x81\x64\0'
 
 
+def test_a_lost_heartbeat_ends_when_it_is_no_longer_watched(master):
+    """Of two that are lost, only the one whose entry is written."""
+    for subindex, node in ((1, 100), (2, 101)):
+        master.write(0x1016, subindex, node << 16 | 1, 4)
+    master.command(START)
+    for node in (100, 101):
+        master.send(0x700 + node, b'\5')
+    for _ in range(2):
+        master.cycle()
+    assert master.read(0x1003) == b'\2'
+    for subindex, register in ((1, b'\x11'), (2, b'\0')):
+        master.write(0x1016, subindex, 0, 4)
+        assert master.read(0x1001) == register
+
+
 def test_a_short_absence_changes_nothing(master, toys):
     master.command(START)
     master.cycle()

@@ -64,6 +64,20 @@ def test_a_master_that_no_longer_asks_is_a_lost_bus_by_simulated_time(master, to
     assert master.read(0x1001) == b'\0'
 
 
+@pytest.mark.parametrize(('index', 'size'), [(0x100C, 2), (0x100D, 1)])
+def test_a_loss_ends_when_it_is_no_longer_watched(master, index, size):
+    master.write(0x100C, 0, 1, 2)
+    master.write(0x100D, 0, 1, 1)
+    master.command(START)
+    asked(master)
+    master.cycle()
+    assert dict(master.cycle())[0x81] == LOST
+    master.write(index, 0, 2, size)     # it still is
+    assert master.read(0x1001) == b'\x11'
+    master.write(index, 0, 0, size)
+    assert master.read(0x1001) == b'\0'
+
+
 @pytest.mark.parametrize(('guard', 'factor'), [(0, 3), (2, 0)])
 def test_without_a_time_or_a_factor_nothing_is_watched(master, guard, factor):
     master.write(0x100C, 0, guard, 2)

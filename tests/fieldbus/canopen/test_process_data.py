@@ -122,6 +122,33 @@ def test_wrong_lengths_are_reported_once(master, toy):
     assert toy.values[0x6040, 0] == 7
 
 
+def test_each_wrong_length_is_reported_and_ends_with_the_right_one(master):
+    """Too long at once after too short, and the right one only after a new start."""
+    master.command(START)
+    short, long = (0x201, b'\x06\0'), (0x201, command(7)[1] + b'\xff')
+    assert master.cycle(short)[0] == (0x81, b'\x10\x82\x11\x01\0\0\0\0')
+    frames = master.cycle(long)
+    assert [data for identifier, data in frames if identifier == 0x81] == [
+        b'\x20\x82\x11\x01\0\0\0\0']
+    assert 0x81 not in dict(master.cycle(long))
+    assert master.cycle(short)[0] == (0x81, b'\x10\x82\x11\x01\0\0\0\0')
+    master.command(TO_PREOPERATIONAL)
+    master.command(START)
+    assert master.cycle(command(6))[0] == (0x81, bytes(8))
+    assert master.read(0x1001) == b'\0'
+
+
+def test_the_error_field_has_as_many_entries_as_errors(master):
+    master.command(START)
+    master.cycle((0x201, b'\x06\0'))
+    assert master.read(0x1003) == b'\x01'
+    assert master.read(0x1003, 1) == b'\x10\x82\x01\0'
+    for subindex in (2, 8):
+        with pytest.raises(Refused) as refused:
+            master.read(0x1003, subindex)
+        assert code(refused) == 0x08000024
+
+
 def test_an_rpdo_that_stays_away_is_a_lost_bus(master, toy):
     master.write(0x1400, 5, 3, 2)
     master.command(START)
@@ -150,7 +177,9 @@ def test_a_fault_is_an_emergency_with_its_register_and_kept(master, toy):
     assert master.cycle(command(0x80))[0] == (0x81, bytes(8))
     assert master.read(0x1003) == b'\x01'
     master.write(0x1003, 0, 0, 1)
-    assert master.read(0x1003, 1) == bytes(4)
+    with pytest.raises(Refused) as refused:
+        master.read(0x1003, 1)
+    assert code(refused) == 0x08000024
     with pytest.raises(Refused) as refused:
         master.write(0x1003, 0, 1, 1)
     assert code(refused) == 0x06090030
