@@ -207,8 +207,12 @@ def hoses_record(sheet: NoneHoses | LumpedHoses, oil: np.record) -> np.record:
     return own
 
 
-def largest_resistance(hoses: np.record, flow: float, thicker: float = 1.0) -> float:
-    """Return drop over flow (Pa s/m3) at a flow in m3/s, the largest up to there  (C41)."""
+def largest_resistance(hoses: np.record, flow: float, thicker: float) -> float:
+    """
+    Return drop over flow (Pa s/m3) at a flow in m3/s, the largest up to there  (C41).
+
+    ``thicker`` is the oil's viscosity over that of the sheet.
+    """
     smooth = (hoses.laminar * thicker if flow <= hoses.critical * thicker
               else hoses.linear * thicker + hoses.square * flow)
     return float(smooth + hoses.fittings * flow)

@@ -11,6 +11,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.plant.plant import plant_record
 from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
+from isa_ros.surroundings.supply_sample import SUPPLY_STATE
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -184,6 +185,18 @@ def test_a_run_replays_and_a_saved_one_goes_on_byte_for_byte(tmp_path: Path) -> 
     assert second.group.samples.tobytes() == result.log.samples[-1].tobytes()
 
 
+def test_a_saved_answer_that_is_not_finite_is_refused_by_name() -> None:
+    """Of each actuator there are three numbers: the heat is used up in its tick."""
+    own = Simulation(SHIPPED.scenario).surroundings
+    saved, rows = own.snapshot(), len(own.supplies)
+    for k, name in enumerate(('flow', 'conductance', 'paid', 'flow')):
+        numbers = np.frombuffer(saved).copy()
+        numbers[rows * SUPPLY_STATE.itemsize // 8 + k] = np.nan
+        with pytest.raises(ConfigError, match=rf'supply ports: saved state has .*{name}.* = nan'):
+            own.restore(numbers.tobytes())
+    own.restore(saved)
+
+
 def cold(celsius: float) -> Callable[[], object]:
     """Return what loads the shipped stand in a cold air; checked when it is assembled."""
     return lambda: Simulation(load('warm_stand', 'warm_stand', changes={
@@ -195,7 +208,8 @@ def test_oil_that_may_get_too_cold_for_an_actuator_is_refused() -> None:
     cold(-12.0)()
     with pytest.raises(ConfigError, match=(
             r'station: its oil can get as cold as -30 celsius by its start, air and coolants, '
-            r'must be >= -2\d\.\d celsius: the friction of an actuator')):
+            r'must be >= -2\d\.\d celsius: the friction of an actuator that it feeds is too '
+            r'fast for the plant step of 20 us')):
         cold(-30.0)()
     simulation = Simulation(SHIPPED.scenario)
     with pytest.raises(ConfigError, match='its oil can get as cold as -29.5 celsius'):

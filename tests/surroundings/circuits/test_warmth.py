@@ -120,20 +120,20 @@ def test_heat_of_actuators_takes_the_place_of_their_energy() -> None:
     """T10: of those with a temperature of their own, at two manifolds; s of the others' E1."""
     plain = circuit_of(HOT_STATION, 'left', 'right')
     own = Circuit(sheet_of(HOT_STATION), MS, [
-        Fed('left', SLOPE, rows=(0, 1), heated=(0,)),
-        Fed('right', SLOPE, rows=(2, 3), heated=(2,))])
+        Fed('left', SLOPE, rows=(2, 0), heated=(2,)),
+        Fed('right', SLOPE, rows=(1, 3), heated=(3,))])
     backs = [back for _, back in plain.pressures]
     plain.advance_nodes([2e-6, 3e-6], [30.0, 50.0], [1e-6, 1.5e-6])
     replies, answers = np.zeros(4, LOAD_REPLY), np.zeros(4, SUPPLY_REPLY)
-    replies['supply_volume'] = 0.5e-6, 1.5e-6, 1e-6, 2e-6
-    replies['return_volume'] = 4e-7, 6e-7, 6e-7, 9e-7
-    answers['paid'] = 12.0, 18.0, 21.0, 29.0
-    answers['heat'] = 7.0, 100.0, -3.0, 200.0     # of others it is not asked for
+    replies['supply_volume'] = 1.5e-6, 1e-6, 0.5e-6, 2e-6
+    replies['return_volume'] = 6e-7, 6e-7, 4e-7, 9e-7
+    answers['paid'] = 18.0, 21.0, 12.0, 29.0
+    answers['heat'] = 100.0, 200.0, 7.0, -3.0     # of others it is not asked for
     own.advancing.to(replies, answers).run()
     own.settle()
     heat = plain._sheet.heat
     assert isinstance(heat, MixedHeat)
-    taken = 12.0 + 21.0 - backs[0] * 4e-7 - backs[1] * 6e-7
+    taken = 12.0 + 29.0 - backs[0] * 4e-7 - backs[1] * 9e-7
     assert float(own.samples[0]['heat'] - plain.samples[0]['heat']) == pytest.approx(
         7.0 - 3.0 - 0.01 * heat.actuators_percent * taken, rel=1e-9)
     for name in ('energy', 'drawn', 'returned'):
