@@ -163,3 +163,15 @@ def test_compiled_equals_python() -> None:
     warm(63.0, plants[0])
     warm.py_func(63.0, plants[1])
     assert plants[0].tobytes() == plants[1].tobytes()
+
+
+def test_oil_flows_in_with_the_temperature_that_is_given() -> None:
+    """T4 as with a sheet of 71 celsius; a step returns rho c V (theta - 71) of its mean."""
+    own, other = (thermal_plant(supply_celsius=celsius).thermal for celsius in (23.0, 71.0))
+    found, expected = state_at(40.0, 35.0), state_at(40.0, 35.0)
+    found.to_oil = 500.0
+    carried = heat(0.1, 12.0, 3.0, 4e-6, 71.0, own, found)
+    assert carried == heat(0.1, 12.0, 3.0, 4e-6, other.supply, other, expected)
+    assert (found.oil, found.body) == (expected.oil, expected.body)
+    assert found.to_oil == 500.0 + carried
+    assert 40.0 < carried / (own.per_volume * 4e-6) + 71.0 < found.oil
