@@ -119,7 +119,8 @@ def frame(size: int) -> bytes:
 
 @row('a slave has no supply voltage', 'it and the slaves behind it are missing; with voltage '
      'again it is in INIT without station address, its drive as at power-on',
-     'configures it anew, as `slave.reconfig` of pysoem does')
+     'gives it its station address, as `slave.recover` of pysoem does, then configures it anew: '
+     '`slave.reconfig`')
 def test_a_slave_without_power_begins_anew_and_hides_those_behind_it(master):
     knee = master.toys[1]
     master.line.set_port('knee', POWERLESS, True)
