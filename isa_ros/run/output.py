@@ -10,8 +10,9 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.buffered import quiet
 from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
-from isa_ros.run.packing import Messages, Names, Packer
+from isa_ros.run.packing import Messages, Packer
 from isa_ros.run.recorders import Recorder
+from isa_ros.run.row_messages import Names
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
 import numpy as np

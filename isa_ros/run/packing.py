@@ -6,60 +6,27 @@ the numbers of all rows into it. Recorder and publishers receive parts of the bl
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import NamedTuple
 
 from isa_ros.bag.message_chunk import Room
 from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.bound import Bound
-from isa_ros.core.record import float_columns, floats
-from isa_ros.core.signals import SAMPLE
+from isa_ros.core.record import floats
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.topic import KEPT, Qos, Topic
-from isa_ros.run.body_messages import prepared, type_of
+from isa_ros.core.topic import Topic
 from isa_ros.run.link_packing import LinkWords
-from isa_ros.run.pack_kernel import APPLIED, pack, Packing, PRESSURES, Target
+from isa_ros.run.pack_kernel import pack, Packing, Target
 from isa_ros.run.quiet_recording import record, Recording
 from isa_ros.run.rare_messages import RareMessages
-from isa_ros.run.supply_messages import of_supply, SIGNALS
-from isa_ros.surroundings.messages import BodyMessage
+from isa_ros.run.row_messages import n_columns, Names, sources
 from isa_ros.tick.exchange import PublishedRows
-from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
-from msg_adapters.actuator_messages import (
-    CUSHION_PRESSURE, KEPT_TOPICS, SENT_SETPOINT, TEMPERATURE, topics)
-from msg_adapters.sensor_messages import fluid_pressure, temperature
-from msg_adapters.template import FIRST_VALUE, Prepared, Template
+from msg_adapters import actuator_messages, clock, event
+from msg_adapters.actuator_messages import SENT_SETPOINT, TEMPERATURE, topics
+from msg_adapters.template import FIRST_VALUE, Template
 import numpy as np
 from numpy.typing import NDArray
 
 Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
-
-_SAMPLE = tuple(SAMPLE.names or ())
-
-
-class Names(NamedTuple):
-    """Names of the sources of the rows, as used in topics and frames."""
-
-    actuators: Sequence[tuple[str, bool]]
-    """(name, is_rotary) of each."""
-    supplies: Sequence[tuple[str, Sequence[str]]] = ()
-    """(name, signals that it publishes) of each row."""
-    bodies: Mapping[str, Sequence[BodyMessage]] = {}
-    """What is published of each body's sample."""
-    heated: Collection[str] = ()
-    """Names of the actuators whose temperature is published."""
-    linked: Collection[str] = ()
-    """Names of the actuators with a link."""
-    cushioned: Collection[str] = ()
-    """Names of the actuators with cushioned ends."""
-
-
-def topics_of_actuator(
-        prefix: str, is_heated: bool, has_link: bool = False,
-        is_cushioned: bool = False) -> list[Topic]:
-    """Return the topics of an actuator below ``prefix`` with their qualities of service."""
-    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
-            for suffix, type_ in topics(is_heated, has_link, is_cushioned)]
 
 
 class Packer:
@@ -75,34 +42,11 @@ class Packer:
     def __init__(
             self, names: Names, rows: PublishedRows, is_run: bool = True,
             start_ns: int = 0) -> None:
-        self._names = names
-        self._rows = rows
-        found: list[tuple[Topic, Prepared | None]] = []
+        self._names, self._rows = names, rows
         self._links = LinkWords(
             [row for row, (name, _) in enumerate(names.actuators) if name in names.linked],
-            _n_columns(rows), rows.sent, len(rows.samples))
-        at = 0
-        for row, (name, is_rotary) in enumerate(names.actuators):
-            own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
-            at += len(_SAMPLE) + len(PRESSURES) + len(APPLIED)
-            found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(
-                          f'/{name}', name in names.heated, row in self._links.rows,
-                          name in names.cushioned)]
-        for supply, published in names.supplies:
-            found += [of_supply(supply, signal, at) for signal in published]
-            at += len(SIGNALS)
-        if names.supplies:
-            found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
-        of_bodies = [own for messages in names.bodies.values() for own in messages]
-        for body, sample in rows.bodies.items():
-            columns = float_columns(sample.dtype, at)
-            at += floats(sample).size
-            found += [(Topic(own.topic, type_of(own)), prepared(own, columns))
-                      for own in names.bodies.get(body, ())]
-        if is_run:
-            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
-                      (Topic(*diagnostics.TOPIC), None)]
+            n_columns(rows), rows.sent, len(rows.samples))
+        found = list(sources(names, rows, self._links, is_run))
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
@@ -117,33 +61,21 @@ class Packer:
         """The messages that are encoded as they come."""
         self.start_ns = start_ns
         """Time of stamps at t = 0."""
-        self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
+        self._periods = {
+            own.topic: own.period_ns for messages in names.bodies.values() for own in messages
+            if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
-        self._own = [[topic.name for topic in topics_of_actuator(
-            f'/{name}', name in names.heated, row in self._links.rows, name in names.cushioned)]
-            for row, (name, _) in enumerate(names.actuators)]
+        self._own = [[topic.name for topic in names.topics_of(row)]
+                     for row in range(len(names.actuators))]
         self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}
         self._recordings: list[Bound] = []
         self._bind()
 
-    @staticmethod
-    def _actuator(name: str, is_rotary: bool, first: int) -> dict[str, Prepared]:
-        places = {field: first + k for k, field in enumerate(
-            (*_SAMPLE, *(f'{field}, absolute' for field in PRESSURES),
-             *(f'applied {field}' for field in APPLIED)))}
-        absolute = {field: places[f'{field}, absolute'] for field in PRESSURES}
-        messages = actuator_messages.prepared(
-            name, is_rotary, places, absolute,
-            {field: places[f'applied {field}'] for field in APPLIED})
-        return {**messages,
-                CUSHION_PRESSURE[0]: fluid_pressure(name, absolute['cushion_pressure']),
-                TEMPERATURE[0]: temperature(name, places['temperature'])}
-
     def _bind(self) -> None:
         """Bind the kernel to the rows as plain floats, and to the block."""
         rows, template = self._rows, self._template
-        words = np.zeros(FIRST_VALUE + _n_columns(rows) + self._links.n_words, np.uint64)
+        words = np.zeros(FIRST_VALUE + n_columns(rows) + self._links.n_words, np.uint64)
         bodies = tuple(floats(sample).reshape(-1) for sample in rows.bodies.values())
         self._packing = Packing(
             np.zeros(3, np.int64), floats(rows.samples), rows.applied, floats(rows.supplies),
@@ -244,7 +176,7 @@ class Packer:
 
     def of_actuator(self, row: int, wanted: Collection[int] | None = None) -> list[bytes | None]:
         """
-        Return the messages of one actuator in the order of `topics_of_actuator`.
+        Return the messages of one actuator in the order of `Names.topics_of`.
 
         ``wanted`` are the places of those that somebody reads; None: all. The others are None.
         """
@@ -288,13 +220,6 @@ class Packer:
                for suffix, _ in topics(is_heated=True, has_link=True, is_cushioned=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
-
-
-def _n_columns(rows: PublishedRows) -> int:
-    """Return the number of values of all rows, without the words of links."""
-    body = sum(floats(sample).size for sample in rows.bodies.values())
-    own = len(_SAMPLE) + len(PRESSURES) + len(APPLIED)
-    return len(rows.samples) * own + len(rows.supplies) * len(SIGNALS) + body
 
 
 _MANY = 1_000_000     # ticks

@@ -53,7 +53,7 @@ def test_a_topic_of_an_actuator_is_one_file(copied: PatchedCopy) -> None:
     copied.replace(path, "        'valve': joint_state.valve(name, sample),\n",
                    "        'valve': joint_state.valve(name, sample),\n"
                    "        'wear': joint_state.references(name, sample),\n")
-    others = {'run/packing.py', 'run/rare_messages.py'}     # of slower messages, and texts
+    others = {'run/row_messages.py', 'run/rare_messages.py'}     # of slower messages, and texts
     assert names_of(copied.touched) == files_of('topic of an actuator') - others
     assert copied.python(
         'import isa_ros; from isa_ros.bag.reader import Bag; from isa_ros.replay.replay import '

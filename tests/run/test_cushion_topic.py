@@ -6,7 +6,8 @@ import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.plant.cushion_sheets import is_cushioned
-from isa_ros.run.packing import Names, Packer, topics_of_actuator
+from isa_ros.run.packing import Packer
+from isa_ros.run.row_messages import Names, topics_of_actuator
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.testing import assert_replays
 from isa_ros.tick.exchange import PublishedRows

@@ -10,7 +10,8 @@ from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
 from isa_ros.run import packing
 from isa_ros.run.output import packer_of
 from isa_ros.run.pack_kernel import pack
-from isa_ros.run.packing import Names, Packer
+from isa_ros.run.packing import Packer
+from isa_ros.run.row_messages import Names
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows

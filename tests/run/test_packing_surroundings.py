@@ -3,7 +3,8 @@
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.run.output import packer_of
-from isa_ros.run.packing import Names, Packer
+from isa_ros.run.packing import Packer
+from isa_ros.run.row_messages import Names
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply
 from isa_ros.tick.exchange import Rows

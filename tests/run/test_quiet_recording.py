@@ -1,7 +1,8 @@
 """Kernels that record quiet ticks into the buffers of a bag."""
 
 from isa_ros.bag.message_chunk import Room
-from isa_ros.run.packing import Names, Packer
+from isa_ros.run.packing import Packer
+from isa_ros.run.row_messages import Names
 import numpy as np
 import pytest
 from tests.run.packed import HELD, some_rows

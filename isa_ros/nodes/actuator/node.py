@@ -24,7 +24,8 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
 from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
-from isa_ros.run.packing import Names, Packer, topics_of_actuator
+from isa_ros.run.packing import Packer
+from isa_ros.run.row_messages import Names, topics_of_actuator
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, TOPICS
