@@ -14,6 +14,7 @@ from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
 
 _HALVINGS = 60
+_LEAST = 1e-3   # %; sheets state 30 to 80
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +27,13 @@ class PressureGain(Parameters):
     percent: float = parameter(
         'load pressure there, of the supply above return pressure; 0: not stated', '%', absent=0.0,
         source='assumed, not stated', ge=0.0, le=99.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a gain of nothing, for which a land would leak without end."""
+        super().__post_init__()
+        if 0.0 < self.percent < _LEAST:
+            raise ParameterError(
+                f'percent = {self.percent:g} %, must be 0 % or >= {_LEAST:g} %')
 
 
 def opened_over_closed(share: float) -> float:

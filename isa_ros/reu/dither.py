@@ -12,6 +12,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ParameterError
 
+_LOWEST = 1e-3      # Hz
 _ROUNDED = 5e-3     # of a frequency that is printed with three digits
 
 
@@ -29,6 +30,9 @@ class Dithered(Parameters):
     def __post_init__(self) -> None:
         """Refuse a dither whose half period is no whole number of the block's periods."""
         super().__post_init__()
+        if 0.0 < self.dither_hz < _LOWEST:
+            raise ParameterError(
+                f'dither_hz = {self.dither_hz:g} Hz, must be 0 Hz or >= {_LOWEST:g} Hz')
         if self.dither_percent == 0.0:
             return
         if self.dither_hz == 0.0:

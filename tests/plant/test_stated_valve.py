@@ -9,7 +9,7 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import servo_valve
 from isa_ros.plant.block_valve import PoppetBlock
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.pressure_gain import PressureGain
+from isa_ros.plant.pressure_gain import land_leakage_at, PressureGain
 from isa_ros.plant.stated_curves import NullShift, SidesFlow, StatedLeakage, StraightFlow
 import numpy as np
 import pytest
@@ -96,6 +96,16 @@ def test_the_gain_that_a_stated_leakage_allows_is_said_and_accepted(asked):
     with pytest.raises(ParameterError):
         replace(STRAIGHT, pressure_gain=PressureGain(
             current_percent=1.0, percent=float(number) / inside))
+
+
+@pytest.mark.parametrize('least', [1e-60, 9.9e-4])
+def test_a_pressure_gain_of_nothing_is_refused(least):
+    """1e-3 % is one: the land leaks 1e5 times what it opens."""
+    with pytest.raises(ParameterError, match=f'percent = {least:g} %, must be 0 % or >= 0.001 %'):
+        PressureGain(current_percent=1.0, percent=least)
+    own = PressureGain(current_percent=1.0, percent=1e-3)
+    assert land_leakage_at(own, 2.0) == pytest.approx(2.0 / 1e-5, rel=1e-4)
+    assert PressureGain(current_percent=1.0, percent=0.0).percent == 0.0
 
 
 @pytest.mark.parametrize(('gain', 'message'), [

@@ -118,8 +118,15 @@ SENSORS: Mapping[str, Mapping[str, Any]] = {
     'pressures 0.1 MPa off': {'sensors.pressure_a.bias': 1e5, 'sensors.pressure_b.bias': -1e5},
     'spool 1 um': {'sensors.spool.sigma': 1e-6}, 'current 50 uA': {'sensors.current.sigma': 5e-5},
     'encoder 2 um': {'sensors.position.sigma': 2e-6}}
-VARIANTS = ('explicit', 'position_control', 'feedback_linearisation', 'pressure_control',
-            'data_sheet_sensors', 'thermal')
+VARIANTS = ('explicit', 'position_control', 'feedback_linearisation', 'data_sheet_sensors',
+            'thermal')
+PRESSED = {name: _track('ram', {'effort': 0.0, **GAINS}, *events, beyond_range='accept')
+           for name, events in {
+    'sine 3 MPa 3 Hz': (_wave(3e6, 3.0, moves='effort'),),
+    'sine 1 MPa 15 Hz': (_wave(1e6, 15.0, moves='effort'),),
+    'steps of 3 MPa': ({'t_s': 0.1, 'position': 'hold', 'effort': 3e6},
+                       {'t_s': 0.6, 'position': 'hold', 'effort': -3e6})}.items()}
+"""What a loop of the pressures presses against a wall; its effort is the load pressure, Pa."""
 LINKS: Mapping[str, Tree] = {
     'link 1 ms': {'cycle_ms': 1.0, 'delay_cycles': 1},
     'link 0.25 ms': {'cycle_ms': 0.25, 'delay_cycles': 2},
@@ -205,6 +212,10 @@ def _of_sheets() -> Iterator[HardRun]:
         for variant in VARIANTS:
             yield HardRun(f'{variant}, {name}', 'rig_linear', LINEAR[name],
                           {'actuators.ram.variants': [variant]})
+    for name, scenario in PRESSED.items():
+        yield HardRun(f'pressure_control, {name}', 'rig_linear', scenario, {
+            'actuators.ram.variants': ['pressure_control'],
+            'actuators.ram.load': {'kind': 'blocked'}})
     for seed, (sensor, values) in enumerate(SENSORS.items()):
         for name in ('sine 20 mm 3 Hz', 'push 3 kN'):
             yield HardRun(f'{sensor}, {name}', 'rig_linear', LINEAR[name],

@@ -43,7 +43,8 @@ def run(actuator: SmartActuator, ticks: int, enable: float = 1.0) -> tuple[np.nd
 
 
 @pytest.mark.parametrize(('rate', 'hz', 'half'), [
-    (1e4, 250.0, 20), (1e4, 416.0, 12), (1e4, 416.7, 12), (1e4, 5000.0, 1), (5e4, 333.0, 75)])
+    (1e4, 250.0, 20), (1e4, 416.0, 12), (1e4, 416.7, 12), (1e4, 5000.0, 1), (5e4, 333.0, 75),
+    (1e4, 1e-3, 5_000_000)])
 def test_half_of_its_period_is_whole_conversions(rate, hz, half):
     """416 Hz is 5000/12 with three digits."""
     assert current(rate_hz=rate, dither_hz=hz).half_period == half
@@ -54,6 +55,8 @@ def test_half_of_its_period_is_whole_conversions(rate, hz, half):
                             'periods of rate_hz = 10000 Hz, such as 1667 or 2500 or 5000 Hz'),
     ({'dither_hz': 9000.0}, 'dither_hz = 9000 Hz, half of its period must be a whole'),
     ({'dither_hz': 0.0}, 'dither_percent = 2 %, must be 0 % with dither_hz = 0 Hz'),
+    ({'dither_hz': 1e-60}, 'dither_hz = 1e-60 Hz, must be 0 Hz or >= 0.001 Hz'),
+    ({'dither_hz': 9.9e-4, 'dither_percent': 0.0}, 'dither_hz = 0.00099 Hz, must be 0 Hz or >='),
     ({'dither_percent': 21.0}, 'dither_percent = 21 %, must be <= 20 %'),
     ({'dither_percent': -1.0}, 'dither_percent = -1 %, must be >= 0 %')])
 def test_a_dither_that_the_conversions_do_not_resolve_is_refused(values, message):

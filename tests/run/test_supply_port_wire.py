@@ -1,5 +1,7 @@
 """The ports of supplies on the private wire: there where a run has them, and nowhere else."""
 
+import re
+
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, SUPPLY_REPLY
 from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import actuator_parts, refuse_actuator_parts, take_actuator_parts
@@ -41,6 +43,17 @@ def test_controllers_find_what_they_are_shown_behind_the_ports() -> None:
     shown = step.state(PORTED)
     assert shown.samples.tobytes() == sent.samples.tobytes()
     assert shown.supplies.tobytes() == sent.supplies.tobytes()
+
+
+@pytest.mark.parametrize('mode', [-1.0, 2.5, 7.0, -3e300])
+def test_controllers_are_shown_no_mode_that_there_is_not(mode: float) -> None:
+    """A mode of another process selects a word of what is refused."""
+    sent = made()
+    sent.samples['device_mode'] = 6.0, 0.0, 3.0
+    decode_step(encode_tick(1, 2, sent, True)).refuse_state(3, PORTED)
+    sent.samples['device_mode'][1] = mode
+    with pytest.raises(WireError, match=re.escape(f'a mode that there is not, of [6.0, {mode}, 3.0]')):
+        decode_step(encode_tick(1, 2, sent, True)).refuse_state(3, PORTED)
 
 
 @pytest.mark.parametrize('broken', ['short', 'nan'])

@@ -147,10 +147,10 @@ def sourced(tree: Tree, place: Place) -> Section:
         if not source.startswith(_SOURCES):
             raise ConfigError(
                 f'{place / key}.source = {source!r}, must start with {" or ".join(_SOURCES)}')
-        scale = below.get('scales_with', '')
-        if scale:
-            refuse_unknown([str(scale)], SCALES, place / key / 'scales_with')
-        section[key] = SourcedValue(number, str(place / key), source, str(scale))
+        scale = str(below.get('scales_with', ''))
+        if 'scales_with' in below:
+            refuse_unknown([scale], SCALES, place / key / 'scales_with')
+        section[key] = SourcedValue(number, str(place / key), source, scale)
     return section
 
 

@@ -5,6 +5,7 @@ from enum import IntEnum
 import struct
 from typing import NamedTuple
 
+from isa_ros.core.device import MODES
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START, SUPPLY_PORT
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
@@ -21,6 +22,7 @@ _STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
 HEADER_BYTES = _STEP.size
 _NUMBER = struct.Struct('<q')
 _LARGEST_STEP_NS = 1_000_000_000
+_MODES = frozenset(map(float, range(len(MODES))))
 _TICK = LOAD_PORT.itemsize + COMMAND.itemsize   # of an actuator
 
 
@@ -155,6 +157,9 @@ class Step(NamedTuple):
             raise WireError(f'a tick of {len(self.body)} bytes, must be {at + size}')
         if not is_finite(np.frombuffer(self.body, np.float64, size // 8, at)):
             raise WireError('a tick with a number that is not finite')
+        modes = np.frombuffer(self.body, SAMPLE, n_actuators, at)['device_mode'].tolist()
+        if not _MODES.issuperset(modes):
+            raise WireError(f'a tick with a mode that there is not, of {modes}')
 
     def refuse_change(self, n_participants: int) -> None:
         """Refuse changes of another number of participants; as `refuse_tick`."""

@@ -20,6 +20,8 @@ def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> 
 
 @pytest.mark.parametrize(('values', 'message'), [
     ({'scales_with': 'stall'}, 'm.yaml: gain.scales_with.stall is unknown; did you mean stall_'),
+    ({'scales_with': {}}, 'm.yaml: gain.scales_with.{} is unknown; valid: '),
+    ({'scales_with': None}, 'm.yaml: gain.scales_with.None is unknown; '),
     ({'scales': 'stall_out'}, 'm.yaml: gain.scales is unknown; did you mean scales_with'),
 ])
 def test_an_unknown_quantity_is_refused(values: dict[str, str], message: str) -> None:
