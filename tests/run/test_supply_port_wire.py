@@ -52,7 +52,7 @@ def test_controllers_are_shown_no_mode_that_there_is_not(mode: float) -> None:
     sent.samples['device_mode'] = 6.0, 0.0, 3.0
     decode_step(encode_tick(1, 2, sent, True)).refuse_state(3, PORTED)
     sent.samples['device_mode'][1] = mode
-    with pytest.raises(WireError, match=re.escape(f'a mode that there is not, of [6.0, {mode}, 3.0]')):
+    with pytest.raises(WireError, match=re.escape(f'there is not, of [6.0, {mode}, 3.0]')):
         decode_step(encode_tick(1, 2, sent, True)).refuse_state(3, PORTED)
 
 
