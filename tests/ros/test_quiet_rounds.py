@@ -150,6 +150,7 @@ def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
 
 
 def test_an_answer_with_a_changed_parameter_is_left_to_python(tmp_path, observer, places):
+    """On a busy host it may come in a tick that Python has begun: then once more."""
     def tune(loop: TickLoop, robot: Robot) -> None:
         robot.transport._next_check = time.monotonic() + DEADLINE_S
         serve = robot.ends[0]._role.serve
@@ -159,9 +160,13 @@ def test_an_answer_with_a_changed_parameter_is_left_to_python(tmp_path, observer
             robot.nodes[0].actuator.tune({'force.kp': 9e-8})
             serve()
         robot.ends[0]._role.serve = tuned
-    found = bag_of(tmp_path / 'bag', observer, (30,), once(40, tune))
-    changed = [own for own in found if own[0] == f'/{NAMES[0]}/applied_parameters' and own[1] > 30]
-    assert len(changed) == 1 and _RECEIVE in places
+    for k in range(5):
+        found = bag_of(tmp_path / str(k), observer, (30,), once(40, tune))
+        ticks = [own[1] for own in found if own[0] == f'/{NAMES[0]}/applied_parameters']
+        assert sum(tick > 40 for tick in ticks) == 1
+        if _RECEIVE in places:
+            return
+    raise AssertionError(places)
 
 
 def test_no_ticks_are_quiet_while_the_topics_are_due(tmp_path, observer, places, monkeypatch):

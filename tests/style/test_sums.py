@@ -15,7 +15,7 @@ EXACT = {
      '(1 + (sizes.get(own.callee.name, 0) if isinstance(own, CallInstr) else 0) '
      'for block in function.blocks for own in block.instructions)'),
     ('reu/device_record.py', '(1 << mode for mode in possible_modes(reu))'),
-    ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),
+    ('run/row_messages.py', '(floats(sample).size for sample in rows.bodies.values())'),
     ('run/wire/steps.py', '(record.itemsize for record in roster.bodies.values())'),
     ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))'),
     ('surroundings/surroundings.py', 'sizes')}
