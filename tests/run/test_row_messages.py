@@ -58,3 +58,13 @@ def test_columns_follow_each_other_over_all_rows() -> None:
     assert 3 * (knee - hip) == first
     assert sorted(fields['/door/states'])[-3:] == [first + 8, first + 9, first + 10]
     assert n_columns(rows) == first + 11
+
+
+def test_a_rotary_actuator_shows_a_torque_and_late_subscribers_get_what_is_kept() -> None:
+    messages = found(NAMES, some_rows(3, 2))
+    paths = {name: {path for path in messages[f'/{name}/load_cell'][1] if 'wrench' in path}
+             for name in ('hip', 'knee')}
+    assert all('torque' in path for path in paths['hip']) and paths['hip']
+    assert all('force' in path for path in paths['knee']) and paths['knee']
+    kept = {topic.name.rpartition('/')[2] for topic in NAMES.topics_of(1) if topic.qos.is_kept}
+    assert kept == {'applied_parameters', 'applied_setpoint', 'sent_setpoint', 'device'}
