@@ -96,8 +96,8 @@ def _of_file(choice: Choice) -> tuple[Tree, Place]:
             raise ConfigError(
                 f'{option} is not used: {choice.name} is no model, a run file says it itself; '
                 f'models: {", ".join(model_names())}')
-    models = () if choice.name.endswith('.yaml') else model_names()
-    path = find(choice.name, CONFIG, {'models': models} if models else {})
+    others = {} if choice.name.endswith('.yaml') else {'models': model_names()}
+    path = find(choice.name, CONFIG, others)
     return read(path), Place.of(path)
 
 

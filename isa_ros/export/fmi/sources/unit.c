@@ -23,11 +23,18 @@ static enum status worse(enum status one, enum status other)
   return one > other ? one : other;
 }
 
-enum status unit_refuse(const unit_t *unit, const char *what)
+unit_t *unit_refuse_creation(const struct importer *importer, const char *what)
 {
   char message[UNIT_MESSAGE_BYTES];
   snprintf(message, sizeof message, "%s is not possible with this unit", what);
-  return unit_say(unit, STATUS_ERROR, message);
+  say(importer, STATUS_ERROR, message);
+  return NULL;
+}
+
+enum status unit_refuse(const unit_t *unit, const char *what)
+{
+  unit_refuse_creation(&unit->importer, what);
+  return STATUS_ERROR;
 }
 
 enum status unit_refuse_phase(const unit_t *unit, const char *what)
@@ -79,14 +86,6 @@ static void set_default(unit_t *unit)
   memset(&unit->given, 0, sizeof unit->given);
   memcpy(unit->given.inputs, DEFAULTS, sizeof DEFAULTS);
   memcpy(unit->given.handed, DEFAULTS, sizeof DEFAULTS);
-}
-
-unit_t *unit_refuse_creation(const struct importer *importer, const char *what)
-{
-  char message[UNIT_MESSAGE_BYTES];
-  snprintf(message, sizeof message, "%s is not possible with this unit", what);
-  say(importer, STATUS_ERROR, message);
-  return NULL;
 }
 
 unit_t *unit_create(const struct importer *importer, const char *token)
