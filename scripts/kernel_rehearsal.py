@@ -10,6 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import isa_ros
 from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
@@ -20,6 +21,7 @@ from isa_ros.core.bound import run_rounds
 from isa_ros.core.kernel import Entry
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.kinds import Kind
+from isa_ros.core.signals import COMMAND
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
@@ -28,6 +30,7 @@ from isa_ros.run.wire.answer_loop import AnswerLoop
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.tick.source import ScheduledSource
+import numpy as np
 from scripts.kernel_objects import Objects
 
 ALONE = 'actuators alone'
@@ -80,11 +83,19 @@ def rehearse(name: str, objects: Objects) -> list[Wanted]:
     """Return the entries that runs of a configuration ask for; objects of some are made."""
     with _noted(objects) as found:
         if name == ALONE:
-            for model in model_names():
-                SmartActuator(default_actuator(model, model), DEFAULT_TIMING).tick()
+            _alone()
         else:
             _run(name)
     return [_wanted(entry) for entry in found.values()]
+
+
+def _alone() -> None:
+    """Take a tick of every model, and a log of ticks."""
+    for model in model_names():
+        config = default_actuator(model, model)
+        SmartActuator(config, DEFAULT_TIMING).tick()
+        group = ActuatorGroup([config], DEFAULT_TIMING)
+        group.advance_many(group.ticked.ports, np.zeros((1, 1), COMMAND))
 
 
 def _run(name: str) -> None:

@@ -2,31 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 import struct
-from typing import NamedTuple
 
-from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
-from isa_ros.actuator.states import STATES
+from isa_ros.actuator.tick_log import LoggedTicks, TickLog
 from isa_ros.actuator.ticking import bound_tick, ticked
 from isa_ros.actuator.timing import Timing
-from isa_ros.core.signals import Records, SAMPLE
+from isa_ros.core.signals import Records
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np
 
 _SIZE = struct.Struct('<I')
-
-
-class TickLog(NamedTuple):
-    """The actuators before the first of n ticks and at the end of each, (n + 1, n_actuators)."""
-
-    samples: Records
-    """`SAMPLE`."""
-    states: Records
-    """`STATES`."""
 
 
 class ActuatorGroup:
@@ -166,22 +155,17 @@ class ActuatorGroup:
         short; meant for actuators with loads of their own and a constant supply. The log has
         no row of samples unless ``with_samples``. Raises as `advance`.
         """
-        n, n_ticks = len(self.actuators), len(commands)
-        states: Records = np.empty((n_ticks + 1, n), STATES)
-        samples: Records = np.empty((n_ticks + 1 if with_samples else 0, n), SAMPLE)
-        first = 0
-        while True:
-            if n_ticks:
-                self._latch()
-            after = n_ticks if self.is_settled else min(first + 1, n_ticks)
-            done, broken = kernels.actuator_ticks(
-                self.t_ns // PLANT_STEP_NS, self._steps, ports, commands[first:after],
-                self._memory, samples[first:after + 1], states[first:after + 1])
-            self.pass_ticks(done)
-            self.refuse(broken + 1)
-            first = after
-            if first >= n_ticks:
-                return TickLog(samples, states)
+        self.ticked.ports[:] = ports
+        ticks = LoggedTicks(self.tick, self.ticked, commands, with_samples=with_samples)
+        left = len(commands)
+        while left:
+            self._latch()
+            self.set_clock()
+            begun, found = ticks.run(left if self.is_settled else 1)
+            self.pass_ticks(begun)
+            self.refuse(found)
+            left -= begun
+        return ticks.log
 
     def _latch(self) -> None:
         """Let changed parameters take effect."""

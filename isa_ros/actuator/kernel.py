@@ -13,7 +13,6 @@ from isa_ros.actuator.inbox import latch, lose_pending, merge, settle
 from isa_ros.actuator.integration import (
     COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import exchange_frames, hand_over, LINK, receive_samples, send_sample
-from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
@@ -237,31 +236,3 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         if broken >= 0:
             return n * STATE_SIZE + broken
     return -1
-
-
-@kernel
-def write_log(row, memory, samples, states):
-    """Write one row of the `SAMPLE` and the `STATES` of all; no samples where these have none."""
-    for n in range(states.shape[1]):
-        if row < len(samples):
-            samples[row, n] = memory.samples[n]
-        write_states(memory.continuous[n * COPIES], memory.replies[n].force, memory.constants[n],
-                     memory.reu[n], states[row, n])
-
-
-@kernel
-def actuator_ticks(first_step, steps, incoming, commands, memory, samples, states):
-    """
-    Run `actuator_tick` for each row of ``commands``, (n_ticks, n), with constant ``incoming``.
-
-    Return the number of ticks, and the place of a state that the last one broke, or -1.
-    ``states`` and ``samples``, (n_ticks + 1, n), begin with the state before the first tick;
-    samples of no row are left out.
-    """
-    write_log(0, memory, samples, states)
-    for tick in range(len(commands)):
-        broken = actuator_tick(first_step + tick * steps, steps, incoming, commands[tick], memory)
-        write_log(tick + 1, memory, samples, states)
-        if broken >= 0:
-            return tick + 1, broken
-    return len(commands), -1
