@@ -12,6 +12,7 @@ import isa_ros
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.ticking import tick_kernel
+from isa_ros.bag.message_table import messages_in
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
@@ -90,7 +91,8 @@ def rehearse(name: str, objects: Objects) -> list[Wanted]:
 
 
 def _alone() -> None:
-    """Take a tick of every model, and a log of ticks."""
+    """Take a tick of every model, and a log of ticks; read a bag."""
+    messages_in(b'', 0, '')
     for model in model_names():
         config = default_actuator(model, model)
         SmartActuator(config, DEFAULT_TIMING).tick()

@@ -13,7 +13,6 @@ from isa_ros.actuator.timing import Timing
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
-import numpy as np
 
 _SIZE = struct.Struct('<I')
 

@@ -24,6 +24,20 @@ scenarios = pairs()
 print(json.dumps({name: digests(scenarios[name]) for name in sys.argv[2:]}))
 print(*[name for name in sys.modules if name.startswith(('scipy', 'numba.', 'llvmlite.'))])
 """
+COMMANDS = ('step isa_v5 --loop force', 'replay tests/golden/rotor_step')
+COMMAND = """
+import sys
+from pathlib import Path
+class Forbidden:
+    def find_spec(self, name, *others):
+        if name in ('numba', 'llvmlite'):
+            raise AssertionError(f'{name} is loaded')
+sys.meta_path.insert(0, Forbidden())
+from isa_ros.core import kernel_library
+kernel_library.SHIPPED = Path(sys.argv.pop(1))
+from isa_ros.cli.main import main
+sys.exit(main())
+"""
 
 
 @pytest.fixture(scope='module')
@@ -58,6 +72,17 @@ def test_the_recorded_bytes_without_a_compiler(libraries, tmp_path):
         found, loaded = done.stdout.splitlines()
         assert json.loads(found) == {name: expected[name] for name in RUNS}, path.name
         assert loaded == ''
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('command', COMMANDS)
+def test_a_command_compiles_nothing(libraries, command):
+    """What a new user types: measures one actuator, or opens a bag."""
+    done = subprocess.run(
+        [sys.executable, '-W', 'ignore', '-c', COMMAND, str(libraries), *command.split()],
+        cwd=ROOT, env={**os.environ, 'PYTHONPATH': str(ROOT)}, capture_output=True, text=True,
+        timeout=100.0)
+    assert done.returncode == 0, done.stderr
 
 
 def _own_name() -> str:
