@@ -16,6 +16,7 @@ import pytest
 
 _PORT = re.compile(r'started successfully on port (\d+)')
 _DEADLINE = 30.0    # s
+_PROGRAMS = 'chromium', 'google-chrome'    # of Debian, and of the servers of CI
 _ARGUMENTS = ('--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage',
               '--disable-background-networking', '--no-first-run')
 
@@ -23,11 +24,11 @@ _ARGUMENTS = ('--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-
 class Browser:
     """One window."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, program: str, port: int) -> None:
         self._session = f'http://127.0.0.1:{port}/session'
         answer = self._call('POST', '', {'capabilities': {'alwaysMatch': {
             'browserName': 'chrome', 'goog:loggingPrefs': {'browser': 'ALL'},
-            'goog:chromeOptions': {'binary': shutil.which('chromium'),
+            'goog:chromeOptions': {'binary': program,
                                    'args': [*_ARGUMENTS, '--window-size=1300,900']}}}})
         self._session += f'/{answer["sessionId"]}'
 
@@ -94,9 +95,9 @@ class Browser:
 @contextmanager
 def chromium() -> Iterator[Browser]:
     """Yield a browser; skip where none is installed, which fails on a server of CI."""
-    missing = [name for name in ('chromium', 'chromedriver') if shutil.which(name) is None]
-    if missing:
-        reason = f'{" and ".join(missing)} is not installed'
+    program = next(filter(None, map(shutil.which, _PROGRAMS)), None)
+    if program is None or shutil.which('chromedriver') is None:
+        reason = f'there is no chromedriver with {" or ".join(_PROGRAMS)}'
         if os.environ.get('CI'):
             pytest.fail(f'{reason}: pages are not tested')
         pytest.skip(reason)
@@ -105,7 +106,7 @@ def chromium() -> Iterator[Browser]:
     try:
         assert driver.stdout is not None
         port = next(int(found[1]) for line in driver.stdout if (found := _PORT.search(line)))
-        browser = Browser(port)
+        browser = Browser(program, port)
         try:
             yield browser
         finally:
