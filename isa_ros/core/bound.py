@@ -51,7 +51,8 @@ class Bound:
     """
     A kernel over its ``memory``; a call runs it and returns what it returns.
 
-    The arrays of the memory must stay where they are. ``function`` takes the memory alone.
+    The arrays of the memory must stay where they are. ``function`` takes the memory alone. Whoever
+    has ``run`` alone keeps all that it reads.
     """
 
     def __init__(self, function: Any, memory: Any) -> None:
@@ -63,7 +64,8 @@ class Bound:
         if IS_COMPILED:
             self.address = entry_of(function, kind_of(memory)).address()
             called, table = _CALLED(self.address), ctypes.c_void_p(self.table.ctypes.data)
-            self.run: Callable[[], int] = lambda: called(table)
+            kept = self.table, memory
+            self.run: Callable[[], int] = lambda table=table, kept=kept: called(table)
         else:
             records = _with_attributes(memory)
             self.run = lambda: int(function(records))

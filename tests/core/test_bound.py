@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from typing import NamedTuple
+from weakref import ref
 
 from isa_ros.core.bound import arrays_of, Bound, Program, Rebound, table_of
 from isa_ros.core.kernel import kernel
@@ -75,6 +76,17 @@ def test_two_memories_of_a_kernel_are_apart():
     bound[0].run(), bound[1].run(), bound[1].run()
     assert first.masses['x'].tolist() == [1.0, 0.0, 2.0]
     assert second.masses['x'].tolist() == [2.0, 0.0, 4.0]
+
+
+def test_a_call_alone_keeps_all_that_it_reads():
+    """Of a bound kernel that is not kept, neither table nor memory gives way to others."""
+    bound = Bound(count, Rows(np.zeros(1, np.int64)))
+    table, numbers, run = ref(bound.table), ref(bound.memory.numbers), bound.run
+    del bound
+    assert run() == 0 and table() is not None
+    assert numbers().tolist() == [1]
+    del run
+    assert table() is None and numbers() is None
 
 
 def test_a_program_ends_at_the_kernel_that_finds_something():
