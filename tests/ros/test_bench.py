@@ -25,8 +25,10 @@ def test_a_run_tells_speed_phases_start_up_and_memory(way, n_processes, domain):
     assert run.processor[COORDINATOR] > 0.0
 
 
-def test_what_an_actuator_loads_is_more_than_the_floor(monkeypatch):
+def test_what_an_actuator_loads_adds_up_to_its_start(monkeypatch):
+    """A start may be slower than the next by more than they differ: no time is compared."""
     monkeypatch.setattr('isa_ros.bench.loading.REPEATS', 1)
     loads = median_loading()
-    assert 0.0 < loads.floor < loads.imports
-    assert loads.kernels > 0.0 and loads.floor_bytes > 30 * MIB
+    assert min(loads.floor, loads.imports, loads.kernels) > 0.0
+    assert loads.imports + loads.kernels == pytest.approx(loads.whole, abs=1e-6)
+    assert loads.floor_bytes > 30 * MIB
