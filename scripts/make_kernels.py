@@ -2,6 +2,7 @@
 Make the libraries of kernels in isa_ros/kernels, by all cores: starts then take no compiler.
 
     python -m scripts.make_kernels                  for the processor of this machine
+    python -m scripts.make_kernels --own            for older ones of its kind too
     python -m scripts.make_kernels --all            for all targets, as the wheel has them
     python -m scripts.make_kernels x86-64 aarch64   for these
 
@@ -25,7 +26,7 @@ from tempfile import TemporaryDirectory
 import time
 from typing import Any, NamedTuple, TextIO
 
-from isa_ros.core.kernel_library import SHIPPED
+from isa_ros.core.kernel_library import own_targets, SHIPPED
 from isa_ros.core.lowering import lower_only
 from isa_ros.core.objects import library_of, own_target, Target, TARGETS
 from isa_ros.text.progress import terminal_line
@@ -189,12 +190,14 @@ def main(arguments: Sequence[str], stream: TextIO = sys.stdout) -> int:
     parser.add_argument('targets', nargs='*', metavar='TARGET', help=', '.join(TARGETS))
     parser.add_argument('--out', type=Path, default=SHIPPED, metavar='DIRECTORY',
                         help='of the libraries, isa_ros/kernels')
+    parser.add_argument('--own', action='store_true', help='all targets that run on this machine')
     parser.add_argument('--all', action='store_true', help='all targets')
     given = parser.parse_args(arguments)
     unknown = [name for name in given.targets if name not in TARGETS]
     if unknown:
         parser.error(f'target {unknown[0]}: unknown, valid: {", ".join(TARGETS)}')
-    targets = list(TARGETS) if given.all else given.targets or [own_target().name]
+    targets = (list(TARGETS) if given.all else own_targets() if given.own
+               else given.targets or [own_target().name])
     given.out.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(dir=given.out, prefix='.') as directory:
         objects = Objects(Path(directory), tuple(targets))

@@ -181,6 +181,18 @@ def test_kernels_are_made_before_the_first_simulation(ready: Path) -> None:
     assert said(ready, 'demo') == ('ran -m isa_ros demo\n', '')
 
 
+def test_kernels_are_made_before_the_whole_suite(ready: Path) -> None:
+    """For all processors of this kind, by all cores; chosen tests compile what they need."""
+    shutil.copy(ready / 'requirements.txt', ready / 'requirements-test.txt')
+    shutil.copy(ready / 'requirements.txt', ready / '.venv' / 'requirements-test.txt')
+    made = MADE.replace('\n', ' --own\n')
+    assert said(ready, 'test', '-k', 'valve') == ('ran -m pytest -k valve\n', '')
+    assert said(ready, 'test', '-x') == ('ran -c import xdist\nran -m pytest -n auto -x\n', made)
+    assert said(ready, 'test', '--quick') == (
+        'ran -c import xdist\nran -m pytest --quick -n auto\n', made)
+    assert said(ready, 'test', NUMBA_DISABLE_JIT='1')[1] == ''
+
+
 def test_a_link_to_it_is_the_clone(ready: Path, tmp_path: Path) -> None:
     """From another folder, also by two links; nothing is made beside them."""
     folder = tmp_path / 'links'

@@ -75,6 +75,13 @@ for _ in range(2):
     simulation.step()
 print(simulation.samples['ram']['spool_reference'])
 """
+_STAYS = """
+from hashlib import sha256
+import isa_ros
+result = isa_ros.load('rig_linear', 'identify_linear').simulate(0.3)
+print(sha256(b''.join(result[f'ram.{name}'].tobytes() for name in (
+    'position', 'velocity', 'force', 'pressure_a', 'pressure_b', 'spool', 'current'))).hexdigest())
+"""
 
 
 class Extended(NamedTuple):
@@ -150,3 +157,11 @@ def test_a_control_block_is_a_file_a_kind_and_a_branch(extended: Extended) -> No
     assert len(extended.block) == 4
     assert copied.python(_PUSHES) == "True ['1e-09', '1e-08']\n0.0\n"
     assert 'reu.force.kp ' in copied.isa('params', 'isa_v5', '--variant', 'proportional')
+
+
+@pytest.mark.slow
+def test_what_is_compiled_there_gives_the_same_bytes(
+        extended: Extended, capsys: pytest.CaptureFixture[str]) -> None:
+    """A run without the extensions: its tick is compiled in the copy, and in a library here."""
+    exec(_STAYS, {})
+    assert extended.copied.python(_STAYS) == capsys.readouterr().out
