@@ -18,6 +18,7 @@ from isa_ros.core.bound import Rebound
 from isa_ros.core.changeable import sound
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, MODES, POSITION, PRESSURE, SPOOL
 from isa_ros.core.record import floats
+from isa_ros.core.remembered import remembered
 from isa_ros.core.signals import (
     COMMAND, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -57,6 +58,7 @@ class Bounds(NamedTuple):
     what: str
 
 
+@remembered
 def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     """Return the ranges by field of a `COMMAND`; a field that no block uses has none."""
     position = sheet.reu.position

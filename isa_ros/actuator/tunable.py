@@ -19,6 +19,7 @@ from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import narrowed, unlinked, usable
 from isa_ros.core.changeable import Changeable, changeables, marked, with_changes
 from isa_ros.core.parameter import check
+from isa_ros.core.remembered import remembered
 from isa_ros.core.units import in_si, of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import linearised, LocalLoad
@@ -40,7 +41,8 @@ _FORCE = f'{LOAD}force'
 _VALVE = 'm | A'  # unit, in a sheet, of an output that commands the valve
 
 
-def tunables(sheet: ActuatorSheet) -> dict[str, Changeable]:
+@remembered
+def tunables(sheet: ActuatorSheet) -> Mapping[str, Changeable]:
     """Return the gains and limits of the blocks that are on, SI, outermost first."""
     on, narrower = active(sheet.reu), usable(sheet)
     found = {}
@@ -79,7 +81,8 @@ def refuse_unusable(sheet: ActuatorSheet) -> None:
         check(f'reu.{gain.name}', gain.value, gain.declared)
 
 
-def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, Changeable]:
+@remembered
+def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> Mapping[str, Changeable]:
     """
     Return all that may change during a run: `tunables` by their names, then all others.
 
@@ -92,7 +95,7 @@ def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, C
         own = others[_FORCE]
         others[_FORCE] = own._replace(declared={
             **own.declared, 'doc': f'{own.doc}{_lasting(sheet, load)}'})
-    return tunables(sheet) | {
+    return {**tunables(sheet)} | {
         name: own._replace(declared={
             **narrowed(name, own.declared, narrower),
             'unit': of_coordinate(own.unit, sheet.is_rotary)})

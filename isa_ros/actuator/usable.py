@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, ROUNDED, valve_stop
 from isa_ros.core.conditions import REACTIONS
+from isa_ros.core.remembered import remembered
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.plant.block_valve import NoneBlock
@@ -82,6 +83,7 @@ def narrowed(
     return {**declared, 'bounds': bounds, 'doc': f'{declared["doc"]}; {own.why}'}
 
 
+@remembered
 def usable(sheet: ActuatorSheet) -> Mapping[str, Usable]:
     """Return what is narrower than its declaration, by the keys of `isa params`."""
     found: dict[str, Usable] = {}

@@ -63,12 +63,20 @@ class Bound:
         """Of the machine code; 0 without the compiler."""
         if IS_COMPILED:
             self.address = entry_of(function, kind_of(memory)).address()
-            called, table = _CALLED(self.address), ctypes.c_void_p(self.table.ctypes.data)
-            kept = self.table, memory
-            self.run: Callable[[], int] = lambda table=table, kept=kept: called(table)
+            self.run: Callable[[], int] = _call_of(self.address, self.table, memory)
         else:
             records = _with_attributes(memory)
             self.run = lambda: int(function(records))
+
+
+def _call_of(address: int, table: NDArray[np.int64], memory: Any) -> Callable[[], int]:
+    """Return a call of machine code over a table, which keeps the table and what it refers to."""
+    called, pointer, kept = _CALLED(address), ctypes.c_void_p(table.ctypes.data), (table, memory)
+
+    def call(pointer: ctypes.c_void_p = pointer, kept: Any = kept) -> int:
+        found: int = called(pointer)
+        return found
+    return call
 
 
 def _with_attributes(memory: Any) -> Any:

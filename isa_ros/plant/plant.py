@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.remembered import remembered
 from isa_ros.errors import ParameterError
 from isa_ros.plant import (
     block_valve, chambers, coil, cushion, drives, friction, hose, hysteresis, load_holding,
@@ -126,7 +127,12 @@ def is_heated(sheet: PlantSheet) -> bool:
 
 
 def plant_record(sheet: Plant) -> np.recarray:
-    """Return the `PLANT` record of a sheet, shape (1,)."""
+    """Return the `PLANT` record of a sheet, shape (1,), the caller's own."""
+    return _plant_record(sheet).copy()
+
+
+@remembered
+def _plant_record(sheet: Plant) -> np.recarray:
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
     lands = valve_record.valve_record(sheet.valve, area_a / area_b)

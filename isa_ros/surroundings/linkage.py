@@ -17,6 +17,7 @@ import math
 from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 import numpy as np
+from numpy.typing import ArrayLike
 
 DIRECT = 0
 SLIDER_CRANK = 1
@@ -110,6 +111,22 @@ def actuator_coordinate(q, linkage):
     if linkage.kind == FOUR_BAR:
         return four_bar(q, linkage)
     return direct(q, linkage)
+
+
+@kernel
+def find_levers(angles, linkage, found):
+    """Write the lever at each of n joint angles, rad, to ``found`` (n,)  (L2)."""
+    for k in range(len(angles)):
+        found[k] = actuator_coordinate(angles[k], linkage)[1]
+
+
+def levers(angles: ArrayLike, linkage: np.record) -> list[float]:
+    """Return the lever at each joint angle, rad: m or 1  (L2)."""
+    places = np.array(angles, float)
+    found = np.zeros(len(places))
+    find_levers(places, linkage, found)
+    values: list[float] = found.tolist()
+    return values
 
 
 def rod_eye(q: float, linkage: np.record) -> tuple[float, float]:

@@ -43,7 +43,7 @@ class Joint(Parameters):
             raise ParameterError(f'{where}.sense = {self.sense:g}, must be 1 or -1')
         row = linkage_record(self)
         angles = np.linspace(self.low_deg, self.high_deg, CHECKED_ANGLES)
-        levers = [kernels.actuator_coordinate(math.radians(angle), row)[1] for angle in angles]
+        levers = kernels.levers([math.radians(angle) for angle in angles], row)
         for angle, lever in zip(angles, levers):
             if not math.isfinite(lever):
                 raise ParameterError(

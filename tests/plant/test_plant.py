@@ -137,6 +137,15 @@ def test_a_null_bias_drives_the_spool_its_own_way():
     assert more.spool.acceleration > 0.0 > less.spool.acceleration
 
 
+def test_a_record_is_the_callers_own():
+    """Who changes one changes no other of the same sheet."""
+    sheet = actuator_sheet('isa_v5').plant
+    first = plant_record(sheet)
+    stiffness = float(first[0].mechanics.k_s)
+    first[0].mechanics.k_s = 2.0 * stiffness
+    assert plant_record(sheet)[0].mechanics.k_s == stiffness > 0.0
+
+
 def test_the_valve_feels_the_resonance_of_its_coil():
     """V11, V13: the spool is driven by the current with its mode, on the series scale."""
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')

@@ -118,3 +118,13 @@ def test_a_lever_is_short_by_its_own_length_however_long_another_one_is():
     for lever, first in ((1.9e-3, 40e-3), (-40e-3, 40e-3), (1e-4, 40e-3), (0.0, 40e-3)):
         assert is_short(lever, first)
         assert is_short(-lever, -first)
+
+
+@pytest.mark.parametrize('name', LINKAGES)
+def test_levers_are_those_of_each_angle(name):
+    """L2, at all angles in one call."""
+    row = LINKAGES[name][0]
+    angles = [-1.2, -0.7, 0.4]
+    expected = [linkage.actuator_coordinate(q, row)[1] for q in angles]
+    assert np.array_equal(linkage.levers(angles, row), expected, equal_nan=True)
+    assert linkage.levers([], row) == []

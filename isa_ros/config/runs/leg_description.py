@@ -24,7 +24,7 @@ from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.messages import imu_frame, joint_name, SLIDER
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, Link
-from isa_ros.surroundings.linkage import actuator_coordinate, rod_eye
+from isa_ros.surroundings.linkage import levers, rod_eye
 from isa_ros.surroundings.linkage_sheet import Direct, FourBar, Joint, linkage_record
 import numpy as np
 
@@ -134,7 +134,7 @@ def _torque(sheet: Joint, actuator: ActuatorSheet) -> float:
     """Return the torque of the rated force at the longest lever of a joint, Nm."""
     linkage = linkage_record(sheet)
     angles = np.linspace(math.radians(sheet.low_deg), math.radians(sheet.high_deg), _LEVER_ANGLES)
-    lever = max(abs(actuator_coordinate(angle, linkage)[1]) for angle in angles)
+    lever = max(map(abs, levers(angles, linkage)))
     rated = setpoint_bounds(actuator).get('effort')
     if rated is None:   # no impedance
         return float(lever * ratings_of(plant_record(actuator.plant)[0]).force_range)
