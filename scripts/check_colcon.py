@@ -16,7 +16,7 @@ import sys
 import sysconfig
 import tempfile
 
-from scripts.environments.environment import Outcome, outcome
+from scripts.environments.environment import CommandResult, outcome
 
 ROOT = Path(__file__).resolve().parents[1]
 COLCON = 'colcon-common-extensions==0.3.0'
@@ -39,7 +39,7 @@ class Workspace:
         self._folder = folder
         self._bin = folder / 'colcon' / 'bin'
 
-    def environment(self) -> Outcome:
+    def environment(self) -> CommandResult:
         """Make the environment; what the one that runs this has is there too."""
         made = self._do([sys.executable, '-m', 'venv', str(self._bin.parent)], 300.0)
         if not made.is_good:
@@ -50,25 +50,27 @@ class Workspace:
             [str(self._bin / 'python'), '-m', 'pip', 'install', '--quiet',
              '--disable-pip-version-check', COLCON], 600.0)
 
-    def clone(self) -> Outcome:
+    def clone(self) -> CommandResult:
         """Clone the last commit of the checkout."""
         return self._do(
             ['git', 'clone', '--quiet', str(ROOT), str(self._folder / 'src' / 'isa_ros')], 300.0)
 
-    def colcon(self, *arguments: str, timeout: float = 7200.0) -> Outcome:
+    def colcon(self, *arguments: str, timeout: float = 7200.0) -> CommandResult:
         """Run colcon in the workspace."""
         return self._do([str(self._bin / 'colcon'), *arguments], timeout)
 
-    def sourced(self) -> Outcome:
+    def sourced(self) -> CommandResult:
         """Run the command of the sourced workspace, and look for shared files."""
         return self._do(['sh', '-c', SOURCED], 300.0)
 
-    def _do(self, command: Sequence[str], timeout: float) -> Outcome:
+    def _do(self, command: Sequence[str], timeout: float) -> CommandResult:
         path = f'{self._bin}:/usr/local/bin:/usr/bin:/bin'
         return outcome(command, self._folder, timeout, PATH=path)
 
 
-def steps(workspace: Workspace, tests: Sequence[str]) -> list[tuple[str, Callable[[], Outcome]]]:
+def steps(
+        workspace: Workspace,
+        tests: Sequence[str]) -> list[tuple[str, Callable[[], CommandResult]]]:
     """Return what is done, in this order, by name."""
     return [
         ('environment', workspace.environment),

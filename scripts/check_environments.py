@@ -28,7 +28,7 @@ import tempfile
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import aligned, markdown
 from scripts.environments.environment import (
-    Environment, LOWEST, needed, NEWEST, Outcome, outcome)
+    CommandResult, Environment, LOWEST, needed, NEWEST, outcome)
 from scripts.environments.interpreters import find, PYTHONS
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -72,7 +72,7 @@ def ros_packages(requirements: Path) -> list[str]:
             if line.startswith('ros-jazzy-')]
 
 
-def checks(environment: Environment, wheel: Path) -> Iterator[tuple[str, Outcome]]:
+def checks(environment: Environment, wheel: Path) -> Iterator[tuple[str, CommandResult]]:
     """Yield each check with its outcome; that of the leg prints its digest."""
     isa, install = partial(environment.run, 'isa'), environment.install
     bags = [path.parent for path in sorted((ROOT / 'tests' / 'golden').glob('*/metadata.yaml'))]
@@ -90,9 +90,9 @@ def checks(environment: Environment, wheel: Path) -> Iterator[tuple[str, Outcome
             partial(environment.run, 'python', '-c', f'import {modules}'))])
 
 
-def in_turn(steps: Sequence[Callable[[], Outcome]]) -> Outcome:
+def in_turn(steps: Sequence[Callable[[], CommandResult]]) -> CommandResult:
     """Run steps until one fails; return what the last one printed, and the time of all."""
-    seconds, done = 0.0, Outcome(True, 0.0, '')
+    seconds, done = 0.0, CommandResult(True, 0.0, '')
     for step in steps:
         done = step()
         seconds += done.seconds

@@ -25,7 +25,7 @@ _MTS = ('DanielMaurelE/vRTHS_AMBC_MRdamper', '08753ffd7abd5b19053f7e79149c3a68f4
 _ROTARY = ('vtnsi/actuator_dataset', 'f9926eb53e1c324d7ffafc4536f2494b7508d7ed')
 
 
-class Record(NamedTuple):
+class PublicFile(NamedTuple):
     """One file of a repository at a commit."""
 
     repository: str
@@ -36,13 +36,13 @@ class Record(NamedTuple):
 
 
 RECORDS = {
-    'mts_damper.txt': Record(
+    'mts_damper.txt': PublicFile(
         *_MTS, 'Cap6_ModeloActuador/Preprocesamiento/Datos/0A.txt',
         '7ac3fd85ba301805323fc8f20a967ff3e989babcbcd9719b9bf5aa9d734168d1'),
-    'rotary_1.txt': Record(
+    'rotary_1.txt': PublicFile(
         *_ROTARY, 'Data/Act_1/Base_000_100_508_9-11-2019-8-55-09 AM.txt',
         '55ad4c1c8da285e8529b035fbde05b50b649b4f27c52e3188b6b4f45625da272'),
-    'rotary_2.txt': Record(
+    'rotary_2.txt': PublicFile(
         *_ROTARY, 'Data/Act_2/Base_000_100_824_9-11-2019-10-54-16 AM.txt',
         '8ef0364153c85c7f9110a3e9fdf870cb03e3a7da27de3c21fc2745027018aed7')}
 """By the name that a file gets: a servo-hydraulic press with a damper; two rotary actuators."""

@@ -97,7 +97,7 @@ def about_z(sine, cosine):
     return sp.Matrix([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
 
 
-class Leg:
+class SymbolicLeg:
     """Symbols and geometry; ``turns[k]`` rotates link k's vectors to its parent's axes."""
 
     def __init__(self):
@@ -254,7 +254,7 @@ def assignments(leg, entries):
 
 def generate():
     """Return the source of isa_ros/surroundings/bodies/leg/dynamics.py."""
-    leg = Leg()
+    leg = SymbolicLeg()
     entries = outputs(leg)
     shorten(leg, entries)
     lines, results = assignments(leg, entries)

@@ -46,7 +46,7 @@ _NOTHING = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)(lambda table: 0)
 _ADDRESS = ctypes.cast(_NOTHING, ctypes.c_void_p).value or 0
 
 
-class Wanted(NamedTuple):
+class WantedKernel(NamedTuple):
     """An entry, with its kernel by name: what one process asks another one for."""
 
     module: str
@@ -70,7 +70,7 @@ class _Nowhere:
         """Do nothing."""
 
 
-def tick() -> Wanted:
+def tick() -> WantedKernel:
     """Return the tick of the actuators."""
     return _wanted(tick_kernel())
 
@@ -80,7 +80,7 @@ def rehearsals() -> list[str]:
     return [ALONE, *shipped(CONFIG)]
 
 
-def rehearse(name: str, objects: Objects) -> list[Wanted]:
+def rehearse(name: str, objects: Objects) -> list[WantedKernel]:
     """Return the entries that runs of a configuration ask for; objects of some are made."""
     with _noted(objects) as found:
         if name == ALONE:
@@ -150,7 +150,7 @@ def _runs(entry: Entry) -> bool:
     return entry.kernel is run_rounds or entry.kernel.__module__.startswith(_NEEDED)
 
 
-def _wanted(entry: Entry) -> Wanted:
+def _wanted(entry: Entry) -> WantedKernel:
     own = entry.kernel
-    return Wanted(own.__module__, own.__name__, entry.kind, entry.is_called, entry.symbol,
-                  len(kernels_of(own)))
+    return WantedKernel(own.__module__, own.__name__, entry.kind, entry.is_called, entry.symbol,
+                        len(kernels_of(own)))

@@ -26,7 +26,7 @@ def wanted(t: float) -> float:
     return 0.05 + 0.01 * math.sin(2.0 * math.pi * (0.5 + 0.6875 * t) * t)
 
 
-class Sweep(Controller):
+class PositionSweep(Controller):
     """Commands the position alone."""
 
     def step(self, state: State) -> dict[str, Setpoint]:
@@ -39,7 +39,7 @@ def measured(
         clock_ppm: float = CLOCK_PPM,
         machine: str | Mapping[str, Any] = 'rig_linear') -> tuple[Path, Path]:
     """Return a CSV file of a machine with ``changes``, and its mapping; seed 5 of the noise."""
-    result = isa_ros.load(machine, changes=changes).simulate(duration, [Sweep()])
+    result = isa_ros.load(machine, changes=changes).simulate(duration, [PositionSweep()])
     random = np.random.default_rng(5)
     t = result.time
     columns = [1e3 * t, [1e3 * wanted(own) for own in t]]

@@ -31,7 +31,7 @@ from isa_ros.core.lowering import lower_only
 from isa_ros.core.objects import library_of, own_target, Target, TARGETS
 from isa_ros.text.progress import terminal_line
 from scripts.kernel_objects import Objects
-from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, tick, Wanted
+from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, tick, WantedKernel
 
 PERIOD_S = 1.5          # between two lines
 _REHEARSAL = 30         # size of one, in kernels
@@ -47,7 +47,7 @@ class Job(NamedTuple):
     name: str
 
 
-def make(wanted: Wanted, objects: Objects) -> dict[str, str]:
+def make(wanted: WantedKernel, objects: Objects) -> dict[str, str]:
     """Make the objects of an entry; return why a target has none."""
     return objects.make(wanted.entry)
 
@@ -162,7 +162,7 @@ class Making:
         for wanted in result:
             self._want(wanted)
 
-    def _want(self, wanted: Wanted) -> None:
+    def _want(self, wanted: WantedKernel) -> None:
         if wanted.symbol not in self.refused:
             self.refused[wanted.symbol] = {}
             self._progress.total += 1

@@ -35,7 +35,7 @@ CALL = 1200         # ticks of one actuator in a call: 15 ms
 SHARE = 0.95        # of all intervals, that have the median in them
 
 
-class Cost(NamedTuple):
+class PartCost(NamedTuple):
     """Of one case: us a tick before, and the ratio to it with its interval."""
 
     pairs: int
@@ -126,7 +126,7 @@ def pair(sides: Sequence[Side], rounds: int) -> tuple[float, float, bool]:
             first == second)
 
 
-def cost(old: Path, case: str, pairs: int = PAIRS, rounds: int = ROUNDS) -> Cost:
+def cost(old: Path, case: str, pairs: int = PAIRS, rounds: int = ROUNDS) -> PartCost:
     """Return the cost of a case against the files in ``old``."""
     n_actuators, text, motion = CASES[case]
     found = []
@@ -139,11 +139,11 @@ def cost(old: Path, case: str, pairs: int = PAIRS, rounds: int = ROUNDS) -> Cost
                      for root in (old, ROOT)[::order]]
             found.append(pair(sides[::order], rounds))
     ratios = [ratio for _, ratio, _ in found]
-    return Cost(pairs, median(own[0] for own in found), median(ratios), *interval(ratios),
-                all(own[2] for own in found))
+    return PartCost(pairs, median(own[0] for own in found), median(ratios), *interval(ratios),
+                    all(own[2] for own in found))
 
 
-def row(case: str, own: Cost) -> str:
+def row(case: str, own: PartCost) -> str:
     """Return a row of the table of the page."""
     return (f'| {case} | {own.pairs} | {own.before:.1f} us | {own.ratio:.3f} '
             f'| {own.lowest:.3f} to {own.highest:.3f} | {"same" if own.is_same else "OTHERS"} |')

@@ -34,7 +34,7 @@ MOTIONS: Mapping[str, Any] = {
 """Amplitude (mm), frequency (Hz) and start (s) of the sine of actuator k, by name."""
 
 
-class Difference(NamedTuple):
+class PressureDifference(NamedTuple):
     """A run against one ODE: pressures in Pa."""
 
     rms: float
@@ -94,16 +94,16 @@ def _ticks(own: Run) -> int:
     return round(DURATION_S * 1e3)
 
 
-def difference(volume_ml: float, port: str, motion: str) -> Difference:
+def difference(volume_ml: float, port: str, motion: str) -> PressureDifference:
     """Return what a run's pressure differs by from that of one ODE."""
     own = load(*tree_of(volume_ml, port, motion))
     exact = reference(own)
     off = simulated(own) - exact
-    return Difference(float(np.sqrt(np.mean(off * off))), float(abs(off).max()),
-                      float(exact.min()), float(exact.max()))
+    return PressureDifference(float(np.sqrt(np.mean(off * off))), float(abs(off).max()),
+                              float(exact.min()), float(exact.max()))
 
 
-def row(motion: str, volume_ml: float, own: Difference) -> str:
+def row(motion: str, volume_ml: float, own: PressureDifference) -> str:
     """Return a row of the table of the page."""
     return (f'| {motion} | {volume_ml:g} ml | {own.least / MPA:.1f} to {own.most / MPA:.1f} MPa '
             f'| {own.rms / MPA:.3f}, {own.greatest / MPA:.2f} MPa |')

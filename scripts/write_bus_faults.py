@@ -39,7 +39,7 @@ STATES = {0x40: ('switch on disabled', 0x06), 0x21: ('ready to switch on', 0x07)
 """Bits of the status word: the state, and the control word that leads towards operation."""
 
 
-class Seen(NamedTuple):
+class MasterValues(NamedTuple):
     """The values that the master receives in one cycle."""
 
     status: int
@@ -47,7 +47,7 @@ class Seen(NamedTuple):
     emergencies: tuple[int, ...]
 
 
-def seen(fault: NamedFault | None) -> list[Seen]:
+def seen(fault: NamedFault | None) -> list[MasterValues]:
     """Return what the master sees of a run, in every cycle."""
     run = commanded_by_bus(load(CONFIG).configuration)
     scenario = idle(run, DURATION_S)
@@ -63,7 +63,7 @@ def seen(fault: NamedFault | None) -> list[Seen]:
         device.take_sample(simulation.group.observed[0], cycle)
         status, _, position, _, _, error, *_ = IN.unpack(device.transmit(TRANSMIT))
         device.receive(RECEIVE, output)
-        found.append(Seen(status, error, tuple(one.code for one in device.emergencies())))
+        found.append(MasterValues(status, error, tuple(one.code for one in device.emergencies())))
         start = position if start is None else start
         output = answer(cycle + 1, status, start)
         rows['kinds'] = 0
@@ -101,7 +101,7 @@ def table() -> str:
     return f'{text}\n\nNot seen in the status word: {", ".join(unseen)}.'
 
 
-def row_of(own: list[Seen], sound: list[Seen]) -> tuple[str, str, str, str] | None:
+def row_of(own: list[MasterValues], sound: list[MasterValues]) -> tuple[str, str, str, str] | None:
     """Return the cells of a fault; None if status word and error do not show it."""
     begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
     changes = list(changes_of(own, sound, begin))
@@ -118,7 +118,7 @@ def row_of(own: list[Seen], sound: list[Seen]) -> tuple[str, str, str, str] | No
     return ', '.join(changes), ', '.join(errors) or '0', ', '.join(messages) or 'none', again
 
 
-def messages_of(own: list[Seen], begin: int) -> Iterator[str]:
+def messages_of(own: list[MasterValues], begin: int) -> Iterator[str]:
     """Yield the code of each emergency message, with the time of the first and their number."""
     times: dict[int, list[int]] = {}
     for cycle, one in enumerate(own):
@@ -128,7 +128,7 @@ def messages_of(own: list[Seen], begin: int) -> Iterator[str]:
         yield f'0x{code:04X} {at[0]}' + (f' ({len(at)} times)' if len(at) > 1 else '')
 
 
-def changes_of(own: list[Seen], sound: list[Seen], begin: int) -> Iterator[str]:
+def changes_of(own: list[MasterValues], sound: list[MasterValues], begin: int) -> Iterator[str]:
     """Yield the first warning, and the first fault reaction and fault, with their times."""
     for words, is_seen in (
             ('warning (bit 7)', lambda one: one.status & WARNING),

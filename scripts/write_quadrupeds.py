@@ -30,32 +30,32 @@ SAME = (1.0, 1.0, 1.0)
 Numbers = Sequence[float]
 
 
-class Body(NamedTuple):
+class RigidBody(NamedTuple):
     """Mass (kg), centre (m) and inertia xx yy zz xy xz yz about it (kg m2), link axes."""
 
     mass: float
     com: Numbers
     inertia: Numbers
 
-    def seen(self, signs: Numbers) -> 'Body':
+    def seen(self, signs: Numbers) -> 'RigidBody':
         """Return it in axes of other signs."""
         x, y, z = signs
         xx, yy, zz, xy, xz, yz = self.inertia
-        return Body(self.mass, [sign * own for sign, own in zip(signs, self.com)],
-                    (xx, yy, zz, x * y * xy, x * z * xz, y * z * yz))
+        return RigidBody(self.mass, [sign * own for sign, own in zip(signs, self.com)],
+                         (xx, yy, zz, x * y * xy, x * z * xz, y * z * yz))
 
 
-class Machine(NamedTuple):
+class Quadruped(NamedTuple):
     """A quadruped."""
 
     title: str
     source: str
-    trunk: Body
+    trunk: RigidBody
     box: Numbers
     """Edges of the trunk's box, m."""
-    hip: Body
-    thigh: Body
-    calf: Body
+    hip: RigidBody
+    thigh: RigidBody
+    calf: RigidBody
     haa: Numbers
     """Place of the left front HAA on the trunk, m; the others are mirrored."""
     hfe: Numbers
@@ -69,37 +69,37 @@ class Machine(NamedTuple):
     has_turned_hind_legs: bool
 
 
-HYQ_REAL = Machine(
+HYQ_REAL = Quadruped(
     'hyq_real_quadruped', 'hyqreal_mujoco, robot_description/hyqreal_body.urdf',
-    trunk=Body(59.0, (-0.015, -0.00186, -0.03465),
-               (1.498728, 9.492381, 9.012359, -0.007369, -0.189135, 0.000185)),
+    trunk=RigidBody(59.0, (-0.015, -0.00186, -0.03465),
+                    (1.498728, 9.492381, 9.012359, -0.007369, -0.189135, 0.000185)),
     box=(1.1, 0.35, 0.25),
-    hip=Body(4.973275, (-0.010027, -0.010608, 0.003644),
-             (0.011231, 0.015768, 0.016863, -0.000592, 0.000225, 0.000224)),
-    thigh=Body(5.877927, (0.107987, -0.011459, -0.002121),
-               (0.016432, 0.075737, 0.079267, 0.001863, 0.003897, -0.00024)),
-    calf=Body(1.291954, (0.149302, -0.003801, -0.000624),
-              (0.001088, 0.029215, 0.029772, -0.000572, 0.000118, 0.00046)),
+    hip=RigidBody(4.973275, (-0.010027, -0.010608, 0.003644),
+                  (0.011231, 0.015768, 0.016863, -0.000592, 0.000225, 0.000224)),
+    thigh=RigidBody(5.877927, (0.107987, -0.011459, -0.002121),
+                    (0.016432, 0.075737, 0.079267, 0.001863, 0.003897, -0.00024)),
+    calf=RigidBody(1.291954, (0.149302, -0.003801, -0.000624),
+                   (0.001088, 0.029215, 0.029772, -0.000572, 0.000118, 0.00046)),
     haa=(0.4435, 0.139, 0.0), hfe=(0.0, -0.117, 0.0), lengths=(0.36, 0.38),
     ranges=((-42.0, 23.0), (15.0, 125.0), (-158.71, -38.38)), efforts=(173.0, 208.0, 249.0),
     has_turned_hind_legs=False)
-HYQ = Machine(
+HYQ = Quadruped(
     'hyq_quadruped', 'hyq-description, urdfs/common.xacro and urdfs/leg/leg.urdf.xacro',
-    trunk=Body(58.96, (0.01, 0.0, 0.00358),
-               (1.5725937, 8.5015928, 9.1954911, 0.028375, -0.203139, -0.004462)),
+    trunk=RigidBody(58.96, (0.01, 0.0, 0.00358),
+                    (1.5725937, 8.5015928, 9.1954911, 0.028375, -0.203139, -0.004462)),
     box=(0.9, 0.35, 0.25),
-    hip=Body(2.93, (0.04263, 0.0, 0.16931),
-             (0.05071, 0.05486, 0.00571, -0.00004, -0.00159, -0.00005)),
-    thigh=Body(2.638, (0.15074, -0.02625, 0.0),
-               (0.00368, 0.02719, 0.02811, -0.00302, 0.0001, 0.00002)),
-    calf=Body(0.881, (0.1254, 0.00004, -0.0001),
-              (0.00047, 0.01256, 0.01233, 0.00006, -0.00001, 0.0)),
+    hip=RigidBody(2.93, (0.04263, 0.0, 0.16931),
+                  (0.05071, 0.05486, 0.00571, -0.00004, -0.00159, -0.00005)),
+    thigh=RigidBody(2.638, (0.15074, -0.02625, 0.0),
+                    (0.00368, 0.02719, 0.02811, -0.00302, 0.0001, 0.00002)),
+    calf=RigidBody(0.881, (0.1254, 0.00004, -0.0001),
+                   (0.00047, 0.01256, 0.01233, 0.00006, -0.00001, 0.0)),
     haa=(0.3735, 0.207, 0.0), hfe=(0.08, 0.0, 0.0), lengths=(0.35, 0.341),
     ranges=((-70.0, 25.0), (-50.0, 70.0), (-140.0, -20.0)), efforts=(150.0, 150.0, 150.0),
     has_turned_hind_legs=True)
 
 
-def urdf_of(own: Machine) -> str:
+def urdf_of(own: Quadruped) -> str:
     """Return the text of a machine."""
     lines = ['<?xml version="1.0"?>', f'<!-- Written by scripts/write_quadrupeds.py, from the '
              f'published {own.source}. -->', f'<robot name="{own.title}">',
@@ -111,7 +111,7 @@ def urdf_of(own: Machine) -> str:
     return '\n'.join([*lines, '</robot>', ''])
 
 
-def _leg(own: Machine, leg: str) -> Iterator[str]:
+def _leg(own: Quadruped, leg: str) -> Iterator[str]:
     is_left, is_front = leg[0] == 'l', leg[1] == 'f'
     is_turned = own.has_turned_hind_legs and not is_front
     x, y, z = own.haa
@@ -146,7 +146,7 @@ def _leg(own: Machine, leg: str) -> Iterator[str]:
     yield '  </link>'
 
 
-def _link(name: str, body: Body, shape: str, place: Numbers, turn: Numbers) -> Iterator[str]:
+def _link(name: str, body: RigidBody, shape: str, place: Numbers, turn: Numbers) -> Iterator[str]:
     xx, yy, zz, xy, xz, yz = (_text([one]) for one in body.inertia)
     yield f'  <link name="{name}">'
     yield '    <inertial>'

@@ -17,7 +17,7 @@ SOURCES = ('empy',)
 _NEEDED = re.compile(r'^Requires-Dist: ([^;\n]+?)(?:; *extra == ["\'](\w+)["\'])?$', re.MULTILINE)
 
 
-class Outcome(NamedTuple):
+class CommandResult(NamedTuple):
     """What a command in an environment did."""
 
     is_good: bool
@@ -51,7 +51,7 @@ class Environment:
         """Return its interpreter."""
         return self._folder / 'bin' / 'python'
 
-    def make(self, wheel: Path) -> Outcome:
+    def make(self, wheel: Path) -> CommandResult:
         """Make it: first what the wheel needs, each by name, then the wheel alone."""
         made = self._uv('venv', '--quiet', '--python', str(self._python), str(self._folder))
         if not made.is_good:
@@ -62,7 +62,7 @@ class Environment:
         return self._uv(
             'pip', 'install', '--quiet', '--python', str(self.python), '--no-deps', str(wheel))
 
-    def install(self, requirements: Sequence[str]) -> Outcome:
+    def install(self, requirements: Sequence[str]) -> CommandResult:
         """Add packages; of those in `SOURCES` alone a file that is to be built is taken."""
         return self._uv(
             'pip', 'install', '--quiet', '--python', str(self.python), '--only-binary', ':all:',
@@ -70,7 +70,7 @@ class Environment:
             '--resolution', RESOLUTIONS[self.versions], *requirements)
 
     def run(self, *command: str | Path, within: Path | None = None,
-            timeout: float = 3600.0) -> Outcome:
+            timeout: float = 3600.0) -> CommandResult:
         """Run a command of the environment, with its own kernels, away from any checkout."""
         program, *arguments = map(str, command)
         return outcome(
@@ -83,12 +83,12 @@ class Environment:
             f'from importlib.metadata import version; print(version({package!r}))'))
         return done.last_line if done.is_good else '-'
 
-    def _uv(self, *arguments: str) -> Outcome:
+    def _uv(self, *arguments: str) -> CommandResult:
         return outcome(['uv', *arguments], self._folder.parent, 600.0)
 
 
 def outcome(
-        command: Sequence[str], folder: Path, timeout: float, **environment: str) -> Outcome:
+        command: Sequence[str], folder: Path, timeout: float, **environment: str) -> CommandResult:
     """Run a command to its end, or to its limit, s; its output and errors are one text."""
     started = time.monotonic()
     clean = {name: value for name, value in os.environ.items()
@@ -99,7 +99,8 @@ def outcome(
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout,
             check=False)
     except subprocess.TimeoutExpired:
-        return Outcome(False, time.monotonic() - started, f'not finished after {timeout:.0f} s')
+        return CommandResult(
+            False, time.monotonic() - started, f'not finished after {timeout:.0f} s')
     except OSError as error:
-        return Outcome(False, 0.0, f'{command[0]}: {error.strerror}')
-    return Outcome(done.returncode == 0, time.monotonic() - started, done.stdout)
+        return CommandResult(False, 0.0, f'{command[0]}: {error.strerror}')
+    return CommandResult(done.returncode == 0, time.monotonic() - started, done.stdout)

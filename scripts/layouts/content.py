@@ -17,7 +17,7 @@ SUPPLIES = (('pressure', 'fluid_pressure', 'supply, Pa'),
 """End of a signal's name, its field, and what its diagram is called."""
 
 
-class Curve(NamedTuple):
+class TopicCurve(NamedTuple):
     """One number of the messages of a topic."""
 
     topic: str
@@ -34,17 +34,17 @@ class Diagram(NamedTuple):
 
     title: str
     """What, and its unit."""
-    curves: Sequence[Curve]
+    curves: Sequence[TopicCurve]
 
 
-class Page(NamedTuple):
+class LayoutPage(NamedTuple):
     """Diagrams below each other."""
 
     title: str
     diagrams: Sequence[Diagram]
 
 
-def pages_of(run: RunConfig) -> list[Page]:
+def pages_of(run: RunConfig) -> list[LayoutPage]:
     """Return a page for all bodies and supplies, if it has any diagram, and one an actuator."""
     whole = [diagram for body in run.bodies
              for diagram in _of_body(body.messages(run.step_ns))]
@@ -55,7 +55,7 @@ def pages_of(run: RunConfig) -> list[Page]:
             whole.append(Diagram(title, [
                 _plain(supply_topic(name, signal), field, f'{name} {signal}', k)
                 for k, (name, signal) in enumerate(found)]))
-    return [*([Page('machine', whole)] if whole else ()),
+    return [*([LayoutPage('machine', whole)] if whole else ()),
             *(_of_actuator(own.name, own.sheet.is_rotary) for own in run.actuators)]
 
 
@@ -64,13 +64,13 @@ def state_of(actuator: str) -> tuple[str, str]:
     return f'/{actuator}/device', 'values[0].value'
 
 
-def _of_actuator(name: str, is_rotary: bool) -> Page:
+def _of_actuator(name: str, is_rotary: bool) -> LayoutPage:
     length, force = ('rad', 'Nm') if is_rotary else ('m', 'N')
     joint, valve, references = (
         f'/{name}/{suffix}' for suffix in ('joint_states', 'valve', 'references'))
     loops = [_entry(references, f'{name}/{loop}', k, 'position', 'reference', REFERENCE)
              for k, loop in enumerate(('position', 'force', 'spool', 'current'))]
-    return Page(name, [
+    return LayoutPage(name, [
         Diagram(f'position, {length}', [
             _entry(joint, name, 0, 'position', 'measured', MEASURED), loops[0]]),
         Diagram(f'force, {force}', [
@@ -107,11 +107,11 @@ def _of_body(messages: Sequence[BodyMessage]) -> Iterator[Diagram]:
                 for k, axis in enumerate('xyz')])
 
 
-def _plain(topic: str, path: str, label: str, k: int) -> Curve:
+def _plain(topic: str, path: str, label: str, k: int) -> TopicCurve:
     """Return a field of a message; ``k`` is its place in its diagram."""
-    return Curve(topic, path, '/' + path.replace('.', '/'), label, COLOURS[k % len(COLOURS)])
+    return TopicCurve(topic, path, '/' + path.replace('.', '/'), label, COLOURS[k % len(COLOURS)])
 
 
-def _entry(topic: str, name: str, k: int, array: str, label: str, colour: str) -> Curve:
+def _entry(topic: str, name: str, k: int, array: str, label: str, colour: str) -> TopicCurve:
     """Return entry ``k`` of a JointState, whose name there is ``name``."""
-    return Curve(topic, f'{array}[{k}]', f'/{name}/{array}', label, colour)
+    return TopicCurve(topic, f'{array}[{k}]', f'/{name}/{array}', label, colour)

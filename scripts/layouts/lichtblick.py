@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 import json
 from typing import Any
 
-from scripts.layouts.content import Diagram, Page, state_of
+from scripts.layouts.content import Diagram, LayoutPage, state_of
 
 _TABS = 'Tab!pages'
 _DIAGNOSTICS, _EVENTS = 'DiagnosticSummary!diagnostics', 'RosOut!events'
@@ -21,7 +21,7 @@ _PLOT: dict[str, Any] = {
     'xAxisVal': 'timestamp', 'sidebarDimension': 240}
 
 
-def text(pages: Sequence[Page], actuators: Sequence[str]) -> str:
+def text(pages: Sequence[LayoutPage], actuators: Sequence[str]) -> str:
     """Return the file: the pages as tabs, beside states of the actuators, events, diagnostics."""
     states = 'StateTransitions!states'
     panels = dict(_plots(pages))
@@ -44,7 +44,7 @@ def text(pages: Sequence[Page], actuators: Sequence[str]) -> str:
     return json.dumps(layout, indent=1) + '\n'
 
 
-def _plots(pages: Sequence[Page]) -> Iterator[tuple[str, dict[str, Any]]]:
+def _plots(pages: Sequence[LayoutPage]) -> Iterator[tuple[str, dict[str, Any]]]:
     for page in pages:
         for diagram in page.diagrams:
             yield _id(page, diagram), {
@@ -59,7 +59,7 @@ def _titled(text: str) -> dict[str, str]:
     return {'lichtblickPanelTitle': text, 'foxglovePanelTitle': text}
 
 
-def _id(page: Page, diagram: Diagram) -> str:
+def _id(page: LayoutPage, diagram: Diagram) -> str:
     """Return the id of a diagram's panel: its place, so that no two are equal."""
     return f'Plot!{page.title}-{page.diagrams.index(diagram)}'
 

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from scripts.layouts.content import Curve, Diagram, Page
+from scripts.layouts.content import Diagram, LayoutPage, TopicCurve
 
 
-def text(pages: Sequence[Page], version: int) -> str:
+def text(pages: Sequence[LayoutPage], version: int) -> str:
     """Return the file for a version, 3 or 4."""
     root = Element('root', {} if version == 3 else {
         'format': 'PlotJuggler', 'pj4_version': '4', 'binding': 'generic'})
@@ -45,7 +45,7 @@ def _plot(splitter: Element, diagram: Diagram, version: int, identity: str) -> N
         SubElement(plot, 'curve', _named(curve, version), color=curve.colour)
 
 
-def _named(curve: Curve, version: int) -> dict[str, str]:
+def _named(curve: TopicCurve, version: int) -> dict[str, str]:
     """Return how a curve is found."""
     return ({'name': curve.topic + curve.field} if version == 3
             else {'topic': curve.topic, 'field': curve.field})

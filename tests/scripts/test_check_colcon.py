@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from scripts import check_colcon
-from scripts.environments.environment import Outcome
+from scripts.environments.environment import CommandResult
 
 
 @pytest.mark.slow
@@ -35,20 +35,20 @@ class Said:
         self._fails = fails
         self.done: list[str] = []
 
-    def _step(self, name: str) -> Outcome:
+    def _step(self, name: str) -> CommandResult:
         self.done.append(name)
-        return Outcome(name != self._fails, 2.6, f'first\n {name} ended\n')
+        return CommandResult(name != self._fails, 2.6, f'first\n {name} ended\n')
 
-    def environment(self) -> Outcome:
+    def environment(self) -> CommandResult:
         return self._step('environment')
 
-    def clone(self) -> Outcome:
+    def clone(self) -> CommandResult:
         return self._step('clone')
 
-    def colcon(self, *arguments: str) -> Outcome:
+    def colcon(self, *arguments: str) -> CommandResult:
         return self._step(' '.join(arguments))
 
-    def sourced(self) -> Outcome:
+    def sourced(self) -> CommandResult:
         return self._step('sourced')
 
 

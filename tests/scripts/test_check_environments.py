@@ -9,9 +9,9 @@ from packaging.version import Version
 import pytest
 from scripts import check_environments
 from scripts.environments import environment, interpreters
-from scripts.environments.environment import Environment, LOWEST, needed, NEWEST, Outcome
+from scripts.environments.environment import CommandResult, Environment, LOWEST, needed, NEWEST
 
-GOOD, BAD = Outcome(True, 2.0, 'yes\n'), Outcome(False, 3.0, 'a\nno\n')
+GOOD, BAD = CommandResult(True, 2.0, 'yes\n'), CommandResult(False, 3.0, 'a\nno\n')
 
 
 def wheel(folder: Path) -> Path:
@@ -65,12 +65,12 @@ def test_an_interpreter_of_another_version_is_none(own_home: Path) -> None:
     assert interpreters.find('3.12') == own_home / 'bin' / 'python3.12'
 
 
-def uv(monkeypatch: pytest.MonkeyPatch, *outcomes: Outcome) -> list[list[str]]:
+def uv(monkeypatch: pytest.MonkeyPatch, *outcomes: CommandResult) -> list[list[str]]:
     """Answer commands with outcomes in turn; return the list of commands, filled as they come."""
     commands: list[list[str]] = []
     answers = iter(outcomes)
 
-    def outcome(command: list[str], folder: Path, timeout: float, **more: str) -> Outcome:
+    def outcome(command: list[str], folder: Path, timeout: float, **more: str) -> CommandResult:
         commands.append([part.replace(str(folder), '.') for part in command])
         return next(answers)
 
@@ -115,7 +115,7 @@ def test_an_outcome_has_output_errors_and_time(
         60.0, A='b')
     assert (done.is_good, done.output) == (False, f'{tmp_path}\nb--never\n')
     assert done.last_line == 'b--never' and 0.0 < done.seconds < 60.0
-    assert environment.outcome(['true'], tmp_path, 60.0) == Outcome(True, pytest.approx(
+    assert environment.outcome(['true'], tmp_path, 60.0) == CommandResult(True, pytest.approx(
         0.0, abs=60.0), '')
     assert environment.outcome(['no-such-program'], tmp_path, 60.0).output == (
         'no-such-program: No such file or directory')
@@ -126,12 +126,12 @@ def test_an_outcome_has_output_errors_and_time(
 def test_steps_end_at_the_one_that_fails() -> None:
     done: list[int] = []
 
-    def step(k: int, outcome: Outcome) -> Outcome:
+    def step(k: int, outcome: CommandResult) -> CommandResult:
         done.append(k)
         return outcome
 
     steps = [lambda k=k, own=own: step(k, own) for k, own in enumerate((GOOD, BAD, GOOD))]
-    assert check_environments.in_turn(steps) == Outcome(False, 5.0, 'a\nno\n')
+    assert check_environments.in_turn(steps) == CommandResult(False, 5.0, 'a\nno\n')
     assert done == [0, 1]
     assert check_environments.in_turn(steps[:1]) == GOOD
 
@@ -144,7 +144,7 @@ class Known:
     def __init__(self, folder: Path, python: Path, versions: str) -> None:
         self.name = folder.name
 
-    def make(self, wheel: Path) -> Outcome:
+    def make(self, wheel: Path) -> CommandResult:
         return self.made
 
     def version_of(self, package: str) -> str:
@@ -156,8 +156,8 @@ def known(monkeypatch: pytest.MonkeyPatch) -> type[Known]:
     class Own(Known):
         pass
 
-    def checks(own: Known, wheel: Path) -> list[tuple[str, Outcome]]:
-        return [(name, Outcome(name != own.fails, 7.4, f'1\n{own.digest}\n'))
+    def checks(own: Known, wheel: Path) -> list[tuple[str, CommandResult]]:
+        return [(name, CommandResult(name != own.fails, 7.4, f'1\n{own.digest}\n'))
                 for name in ('command', 'leg', 'doors')]
 
     monkeypatch.setattr(check_environments, 'Environment', Own)

@@ -8,7 +8,7 @@ from isa_ros.analysis.measured.measurement import read_measurement
 from isa_ros.errors import ConfigError
 import pytest
 from scripts import fetch_records
-from scripts.fetch_records import fetch, Record, RECORDS
+from scripts.fetch_records import fetch, PublicFile, RECORDS
 
 MAPPINGS = Path(__file__).parents[2] / 'config' / 'measurements'
 PRESS = """Header Size:  7
@@ -30,7 +30,7 @@ def host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     folder.mkdir(parents=True)
     (folder / 'LICENSE').write_text('MIT')
     (folder / 'a file.txt').write_text(PRESS)
-    monkeypatch.setattr(fetch_records, 'RECORDS', {'press.txt': Record(
+    monkeypatch.setattr(fetch_records, 'RECORDS', {'press.txt': PublicFile(
         'owner/name', 'abc', 'a file.txt', sha256(PRESS.encode()).hexdigest())})
     return (tmp_path / 'host').as_uri()
 

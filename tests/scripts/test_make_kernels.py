@@ -19,7 +19,7 @@ from isa_ros.core.objects import own_target, TARGETS
 import pytest
 from scripts import kernel_objects, kernel_rehearsal, make_kernels
 from scripts.kernel_objects import Objects
-from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, Wanted
+from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, WantedKernel
 from scripts.make_kernels import (
     link, lower_long, main, make, Making, PERIOD_S, Progress)
 from tests.text.terminal import Terminal
@@ -215,7 +215,7 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch, tmp_path):
     objects = Objects(tmp_path, ('v3',))
 
     def wanted(symbol, size):
-        return Wanted('m', symbol, None, False, symbol, size)
+        return WantedKernel('m', symbol, None, False, symbol, size)
 
     def rehearsed(name, own):
         order.append((name, own))

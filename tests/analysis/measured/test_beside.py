@@ -8,14 +8,14 @@ from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
 import numpy as np
 import pytest
-from scripts.made_measurement import measured, Sweep
+from scripts.made_measurement import measured, PositionSweep
 
 
 def test_a_measurement_is_compared_with_the_bag_of_its_run(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Of the same machine: what differs is the noise that was added."""
     path, mapping = measured(tmp_path, 0.6, {}, clock_ppm=0.0)
-    bag = isa_ros.load('rig_linear').simulate(0.6, [Sweep()]).save(tmp_path / 'bag')
+    bag = isa_ros.load('rig_linear').simulate(0.6, [PositionSweep()]).save(tmp_path / 'bag')
     out = tmp_path / 'fits.json'
     assert main(['compare', str(path), str(bag), '--mapping', str(mapping),
                  '--json', str(out)]) == 0
@@ -30,7 +30,7 @@ def test_a_bag_is_read_by_topic_and_field(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """As if another recorder had made it: an MCAP file under another name, with a mapping."""
     path, mapping = measured(tmp_path, 0.6, {}, noise=0.0, clock_ppm=0.0)
-    bag = isa_ros.load('rig_linear').simulate(0.6, [Sweep()]).save(tmp_path / 'bag')
+    bag = isa_ros.load('rig_linear').simulate(0.6, [PositionSweep()]).save(tmp_path / 'bag')
     other = tmp_path / 'other.yaml'
     other.write_text("signals:\n  position: {topic: /ram/joint_states, field: 'position[0]', "
                      'unit: mm, scale: 1000}\n')
