@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 import re
 
-from benchmarks.bus_ring import Cycles, FLOOR, measured, Ring
+from benchmarks.bus_ring import Cycles, FLOOR, measured, MeasuredRing
 from isa_ros.bench.row import Aim, Row
 from isa_ros.bench.spec import LEG
 from isa_ros.fieldbus.request import FRAME, REAL_TIME
@@ -24,10 +24,10 @@ def bus_rows() -> list[Row]:
     for plant, title in PLANTS.items():
         floors, runs = [], []
         for _ in range(ROUNDS):
-            floors.append(measured(Ring(plant, FLOOR, CYCLES)))
-            runs.append(measured(Ring(plant, FRAME, CYCLES)))
+            floors.append(measured(MeasuredRing(plant, FLOOR, CYCLES)))
+            runs.append(measured(MeasuredRing(plant, FRAME, CYCLES)))
         rows += frame_rows(title, floors, runs, _AIMS.get(plant))
-    return rows + real_time_rows(measured(Ring(LEG, REAL_TIME, CYCLES)))
+    return rows + real_time_rows(measured(MeasuredRing(LEG, REAL_TIME, CYCLES)))
 
 
 def frame_rows(

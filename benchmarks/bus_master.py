@@ -1,8 +1,8 @@
 """
 An EtherCAT master that measures its cycles: `python -m ... STARTED REQUEST RESULT`.
 
-REQUEST is a `Ring` as JSON, RESULT the file to write. It runs in the network namespace of its
-ring, whose slaves it starts and ends.
+REQUEST is a `MeasuredRing` as JSON, RESULT the file to write. It runs in the network namespace of
+its ring, whose slaves it starts and ends.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,7 +20,7 @@ import tempfile
 import time
 from typing import Any
 
-from benchmarks.bus_ring import Cycles, FLOOR, MASTER_END, Ring, SLAVE_END
+from benchmarks.bus_ring import Cycles, FLOOR, MASTER_END, MeasuredRing, SLAVE_END
 from isa_ros.bench.child import environment
 from isa_ros.bench.rigs import config_of
 from isa_ros.errors import RunError
@@ -43,7 +43,7 @@ STEP_S = 1e-3
 def main(arguments: Sequence[str]) -> int:
     """Measure one ring and write its cycles."""
     _, text, result = arguments
-    ring = Ring(**json.loads(text))
+    ring = MeasuredRing(**json.loads(text))
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         with slaves(ring, Path(directory)) as log:
             round_trips, spent = cycles(ring)
@@ -59,7 +59,7 @@ def about_real_time(log: Sequence[str]) -> list[str]:
 
 
 @contextmanager
-def slaves(ring: Ring, directory: Path) -> Iterator[list[str]]:
+def slaves(ring: MeasuredRing, directory: Path) -> Iterator[list[str]]:
     """Start the slaves of a ring, wait until they are ready, and end them; yield their log."""
     config = str(config_of(ring.plant, directory))
     if ring.way == FLOOR:
@@ -85,7 +85,7 @@ def slaves(ring: Ring, directory: Path) -> Iterator[list[str]]:
         log += process.communicate(timeout=END_S)[1].splitlines()
 
 
-def cycles(ring: Ring) -> tuple[list[float], float]:
+def cycles(ring: MeasuredRing) -> tuple[list[float], float]:
     """Bring the drives up, move them, and return each round trip in s and the time of all."""
     master: Any = pysoem.Master()
     master.open(MASTER_END)

@@ -30,7 +30,7 @@ TIMEOUT_S = 300.0
 
 
 @dataclass(frozen=True)
-class Ring:
+class MeasuredRing:
     """A ring to measure."""
 
     plant: str
@@ -80,7 +80,7 @@ def missing() -> str:
     return ''
 
 
-def measured(ring: Ring) -> Cycles | str:
+def measured(ring: MeasuredRing) -> Cycles | str:
     """Measure a ring in a namespace; return its cycles, or why there are none."""
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         result = Path(directory) / 'cycles.json'

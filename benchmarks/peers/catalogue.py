@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
-from benchmarks.peers.link import Link
+from benchmarks.peers.link import PeerEnd
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
@@ -39,14 +39,14 @@ def installed() -> list[Peer]:
     return [peer for peer in PEERS if peer.is_installed]
 
 
-class Ends(Protocol):
+class PeerModule(Protocol):
     """Interface of the file of a peer."""
 
-    def coordinator_end(self, directory: Path, n_workers: int) -> Link:
+    def coordinator_end(self, directory: Path, n_workers: int) -> PeerEnd:
         """Open the coordinator's end; only this run uses ``directory``."""
         ...
 
-    def worker_end(self, directory: Path, index: int) -> Link:
+    def worker_end(self, directory: Path, index: int) -> PeerEnd:
         """Open the end of one worker; that of the coordinator is already open."""
         ...
 
@@ -68,7 +68,7 @@ def peer(name: str) -> Peer:
     raise ConfigError(f'peer {name!r} is unknown; {alternatives(name, names)}')
 
 
-def ends(of: Peer) -> Ends:
+def ends(of: Peer) -> PeerModule:
     """Return the functions of an installed peer."""
-    module: Ends = import_module(f'{__package__}.{of.module}')
+    module: PeerModule = import_module(f'{__package__}.{of.module}')
     return module

@@ -53,7 +53,7 @@ class Octets(NamedTuple):
             'length': types.uint32, 'octets': types.array[types.uint8, self.size]})
 
 
-class End:
+class TopicEnd:
     """A writer of one topic and a reader of the other."""
 
     def __init__(self, written: Octets, read: Octets) -> None:
@@ -91,16 +91,16 @@ class End:
         """Do nothing: at its end the process closes the entities in the right order."""
 
 
-def coordinator_end(directory: Path, n_workers: int) -> End:
+def coordinator_end(directory: Path, n_workers: int) -> TopicEnd:
     """Write steps and read answers."""
     (directory / _WORKERS).write_text(str(n_workers))
-    return End(*_topics(directory))
+    return TopicEnd(*_topics(directory))
 
 
-def worker_end(directory: Path, index: int) -> End:
+def worker_end(directory: Path, index: int) -> TopicEnd:
     """Read steps and write answers."""
     steps, answers = _topics(directory)
-    return End(answers, steps)
+    return TopicEnd(answers, steps)
 
 
 def _topics(directory: Path) -> tuple[Octets, Octets]:

@@ -24,7 +24,7 @@ _HOST = '127.0.0.1'
 _STEPS = 'steps'
 
 
-class CoordinatorEnd:
+class CoordinatorFederate:
     """The federate of the coordinator, and the broker."""
 
     def __init__(self, directory: Path, n_workers: int) -> None:
@@ -85,7 +85,7 @@ class CoordinatorEnd:
         helics.helicsBrokerDisconnect(self._broker)
 
 
-class WorkerEnd:
+class WorkerFederate:
     """The federate of a worker."""
 
     def __init__(self, directory: Path, index: int) -> None:
@@ -115,14 +115,14 @@ class WorkerEnd:
         helics.helicsFederateDisconnect(self._federate)
 
 
-def coordinator_end(directory: Path, n_workers: int) -> CoordinatorEnd:
+def coordinator_end(directory: Path, n_workers: int) -> CoordinatorFederate:
     """Start the broker and join the federation."""
-    return CoordinatorEnd(directory, n_workers)
+    return CoordinatorFederate(directory, n_workers)
 
 
-def worker_end(directory: Path, index: int) -> WorkerEnd:
+def worker_end(directory: Path, index: int) -> WorkerFederate:
     """Join the federation."""
-    return WorkerEnd(directory, index)
+    return WorkerFederate(directory, index)
 
 
 def _answers(index: int) -> str:

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 
-class Link(Protocol):
+class PeerEnd(Protocol):
     """One end: the coordinator's, connected to all workers, or a worker's."""
 
     def send(self, message: bytes) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 _ADDRESS = 'pipes'
 
 
-class CoordinatorEnd:
+class CoordinatorPipes:
     """A pipe to every worker."""
 
     def __init__(self, directory: Path, n_workers: int) -> None:
@@ -35,7 +35,7 @@ class CoordinatorEnd:
         self._listener.close()
 
 
-class WorkerEnd:
+class WorkerPipe:
     """The pipe of a worker."""
 
     def __init__(self, directory: Path) -> None:
@@ -54,11 +54,11 @@ class WorkerEnd:
         self._pipe.close()
 
 
-def coordinator_end(directory: Path, n_workers: int) -> CoordinatorEnd:
+def coordinator_end(directory: Path, n_workers: int) -> CoordinatorPipes:
     """Listen on a socket in ``directory``."""
-    return CoordinatorEnd(directory, n_workers)
+    return CoordinatorPipes(directory, n_workers)
 
 
-def worker_end(directory: Path, index: int) -> WorkerEnd:
+def worker_end(directory: Path, index: int) -> WorkerPipe:
     """Connect to the coordinator."""
-    return WorkerEnd(directory)
+    return WorkerPipe(directory)

@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 from benchmarks.peers.catalogue import ends, Peer, peer
-from benchmarks.peers.link import Link
+from benchmarks.peers.link import PeerEnd
 from benchmarks.peers.worker import load_kernels
 from isa_ros.bench.child import environment
 from isa_ros.config.assembly import surroundings_of
@@ -36,14 +36,14 @@ _NOT_SUPPORTED = 'a run over a peer cannot be paused or saved'
 
 
 class PeerTransport:
-    """A `Transport` to the workers of a `Link`, with the messages of the private wire."""
+    """A `Transport` to the workers of a `PeerEnd`, with the messages of the private wire."""
 
     group = None
     is_quiet = False
     ends = None
 
     def __init__(
-            self, link: Link, run: RunConfig, starts: Records,
+            self, link: PeerEnd, run: RunConfig, starts: Records,
             lost: Callable[[], str | None]) -> None:
         self._link = link
         self._roster = Roster(
@@ -178,7 +178,7 @@ def run_over(
 
 
 @contextmanager
-def _open(peer: Peer, directory: Path, n_workers: int) -> Iterator[Link]:
+def _open(peer: Peer, directory: Path, n_workers: int) -> Iterator[PeerEnd]:
     link = ends(peer).coordinator_end(directory, n_workers)
     try:
         yield link

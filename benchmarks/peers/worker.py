@@ -6,7 +6,7 @@ from pathlib import Path
 import sys
 
 from benchmarks.peers.catalogue import ends, peer
-from benchmarks.peers.link import Link
+from benchmarks.peers.link import PeerEnd
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.config.assembly import timing_of
 from isa_ros.config.runs.run_config import RunConfig
@@ -49,7 +49,7 @@ def _run(files: Sequence[str]) -> RunConfig:
     return run
 
 
-def answer_steps(link: Link, actuator: SmartActuator, index: int) -> None:
+def answer_steps(link: PeerEnd, actuator: SmartActuator, index: int) -> None:
     """Execute and answer the steps of one run, as a participant does."""
     memory = actuator.memory
     while True:

@@ -7,7 +7,7 @@ import zmq
 _STEPS, _ANSWERS = 'steps', 'answers'
 
 
-class End:
+class SocketEnd:
     """A socket to send on and one to receive from."""
 
     def __init__(self, context: zmq.Context, out: zmq.Socket, into: zmq.Socket) -> None:
@@ -37,23 +37,23 @@ class End:
         self._context.destroy(linger=1000)
 
 
-def coordinator_end(directory: Path, n_workers: int) -> End:
+def coordinator_end(directory: Path, n_workers: int) -> SocketEnd:
     """Publish steps and pull answers; the sockets are in ``directory``."""
     context = zmq.Context()
     out, into = context.socket(zmq.PUB), context.socket(zmq.PULL)
     out.bind(_address(directory, _STEPS))
     into.bind(_address(directory, _ANSWERS))
-    return End(context, out, into)
+    return SocketEnd(context, out, into)
 
 
-def worker_end(directory: Path, index: int) -> End:
+def worker_end(directory: Path, index: int) -> SocketEnd:
     """Subscribe to the steps and push answers."""
     context = zmq.Context()
     out, into = context.socket(zmq.PUSH), context.socket(zmq.SUB)
     into.subscribe(b'')
     into.connect(_address(directory, _STEPS))
     out.connect(_address(directory, _ANSWERS))
-    return End(context, out, into)
+    return SocketEnd(context, out, into)
 
 
 def _address(directory: Path, name: str) -> str:

@@ -15,7 +15,7 @@ import threading
 
 from benchmarks.peers import catalogue
 from benchmarks.peers.catalogue import ends, peer, PEERS
-from benchmarks.peers.link import Link
+from benchmarks.peers.link import PeerEnd
 from benchmarks.peers.transport import PeerTransport, RUN_ID
 from benchmarks.peers.worker import answer_steps
 from isa_ros.actuator.actuator import SmartActuator
@@ -72,7 +72,7 @@ def work(directory: Path, run: RunConfig, index: int) -> None:
 
 
 @contextmanager
-def over_pipes(run: RunConfig) -> Iterator[Link]:
+def over_pipes(run: RunConfig) -> Iterator[PeerEnd]:
     """Return the coordinator's end of pipes to a thread for each actuator."""
     # The names of sockets are short, those of pytest's directories are not.
     with tempfile.TemporaryDirectory(prefix='isa_peer_') as name:
@@ -182,5 +182,5 @@ def test_every_peer_has_both_ends(one):
     given = {node.name: [argument.arg for argument in node.args.args]
              for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
     for name in ('coordinator_end', 'worker_end'):
-        wanted = list(inspect.signature(getattr(catalogue.Ends, name)).parameters)[1:]
+        wanted = list(inspect.signature(getattr(catalogue.PeerModule, name)).parameters)[1:]
         assert given[name] == wanted
