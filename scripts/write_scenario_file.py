@@ -9,8 +9,8 @@ from pathlib import Path
 
 from isa_ros.config.models.catalogue import gait_section
 from isa_ros.config.text.sections import SourcedValue
-from isa_ros.scenario.keys import FAULT, ROBOTS, Row, SCENARIO, SETPOINT
-from isa_ros.scenario.trot_motion import GAIT, Gait
+from isa_ros.scenario.keys import FAULT, KeyRow, ROBOTS, SCENARIO, SETPOINT
+from isa_ros.scenario.trot_motion import GAIT, GaitParameters
 from isa_ros.scenario.waveforms import OF_SETPOINTS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
@@ -20,7 +20,7 @@ PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'scenario_file.md'
 _OF_ALL = {'moves': 'position', 'amplitude': 'required'}
 
 
-def keys(table: Mapping[str, Row]) -> list[str]:
+def keys(table: Mapping[str, KeyRow]) -> list[str]:
     """Return the lines of the table of a section's keys."""
     return markdown([HEADER, *([f'`{key}`', *row] for key, row in table.items())])
 
@@ -42,7 +42,7 @@ def gait() -> list[str]:
                if isinstance(own, SourcedValue)}
     return markdown([HEADER, *(
         [key, value, of_trot.get(key, default), meaning]
-        for key, value, default, meaning in rows_of(Gait))])
+        for key, value, default, meaning in rows_of(GaitParameters))])
 
 
 def page(text: str) -> str:

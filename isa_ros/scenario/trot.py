@@ -28,7 +28,7 @@ LEGS_OF_A_PAIR = 2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trot(Parameters):
+class TrotParameters(Parameters):
     """Parameters of a trot."""
 
     forward_speed: float = parameter('speed of the body', 'm/s', ge=0.0, le=5.0)
@@ -67,7 +67,7 @@ def smooth_step(u: float) -> tuple[float, float, float]:
             60.0 * u * rest * (1.0 - 2.0 * u))
 
 
-def foot_at(trot: Trot, stride: float) -> Foot:
+def foot_at(trot: TrotParameters, stride: float) -> Foot:
     """
     Return the foot at a time in strides.
 
@@ -148,7 +148,7 @@ class TrottingLeg:
 
     """
 
-    def __init__(self, trot: Trot, sheet: LegSheet) -> None:
+    def __init__(self, trot: TrotParameters, sheet: LegSheet) -> None:
         self._trot = trot
         self._body = body_record(sheet.body)[0]
         self._thigh, self._calf = sheet.body.thigh.length_m, sheet.body.calf.length_m

@@ -18,7 +18,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, Trot, TrottingLeg
+from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, TrotParameters, TrottingLeg
 from isa_ros.scenario.waveforms import Excursion
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
@@ -30,7 +30,7 @@ GAIT = 'trot'
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gait(Trot):
+class GaitParameters(TrotParameters):
     """A trot, and the part of it that one actuator follows."""
 
     joint: str = choice('the joint it moves', *JOINTS)
@@ -45,7 +45,7 @@ class Gait(Trot):
 class GaitMotion:
     """A trot in the coordinate of one actuator."""
 
-    gait: Gait
+    gait: GaitParameters
     sheet: LegSheet
     is_direct: bool
     """The coordinate is the joint's angle itself, whatever the joint's linkage."""
@@ -125,7 +125,8 @@ def read_gait(tree: Tree, place: Place, actuator: ActuatorConfig, leg: LegConfig
         The section is invalid, or the leg or the actuator cannot follow the trot.
 
     """
-    gait = build(Gait, merge(gait_section(GAIT, str(place)), written(tree, place)), place)
+    gait = build(
+        GaitParameters, merge(gait_section(GAIT, str(place)), written(tree, place)), place)
     joint_of = {name: joint for joint, name in leg.joints} if leg else {}
     moved = joint_of.get(actuator.name)
     is_direct = moved is None and actuator.sheet.is_rotary

@@ -19,7 +19,7 @@ from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.units import MILLI
 from isa_ros.loads.drop_rig import Wheel
 from isa_ros.paper.printed import statement
-from isa_ros.scenario.trot import foot_at, Trot
+from isa_ros.scenario.trot import foot_at, TrotParameters
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
 from isa_ros.validation.actuators import Actuators, SHIPPED
@@ -171,7 +171,8 @@ def _position(trot: Result) -> tuple[Observation, ...]:
 def _carried() -> Entry:
     """Read the mass of the trotting robot back from the loads of its feet  (G4)."""
     shipped = gait_section('trot', 'gait')
-    trot = build(Trot, {each.name: shipped[each.name] for each in fields(Trot)}, Place('trot'))
+    trot = build(TrotParameters, {
+        each.name: shipped[each.name] for each in fields(TrotParameters)}, Place('trot'))
     low, high = (statement(f'robot_mass_{end}') for end in ('low', 'high'))
     strides = np.linspace(0.0, 1.0, 200, endpoint=False)
     loads = [foot_at(trot, float(stride)).load for stride in strides]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hypothesis import given, strategies as st
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.trot import foot_at, leg_angles, Trot, TrottingLeg
+from isa_ros.scenario.trot import foot_at, leg_angles, TrotParameters, TrottingLeg
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record, STANDARD_GRAVITY
 import numpy as np
@@ -16,13 +16,13 @@ from tests.legs import leg_sheet
 URDF = Path(__file__).resolve().parents[2] / 'urdf' / 'hyq_real_leg.urdf'
 SHEET = leg_sheet()
 BODY = body_record(SHEET.body)[0]
-TROT = Trot(forward_speed=1.0, step_frequency_hz=1.7, duty_factor=0.55, step_height=0.08,
-            hip_height=0.57, robot_mass=120.0)
+TROT = TrotParameters(forward_speed=1.0, step_frequency_hz=1.7, duty_factor=0.55, step_height=0.08,
+                      hip_height=0.57, robot_mass=120.0)
 LEG = TrottingLeg(TROT, SHEET)
 
 strides = st.floats(0.0, 10.0)
 trots = st.builds(
-    Trot, forward_speed=st.just(0.0) | st.floats(1e-9, 3.0),
+    TrotParameters, forward_speed=st.just(0.0) | st.floats(1e-9, 3.0),
     step_frequency_hz=st.floats(0.5, 4.0),
     duty_factor=st.floats(0.51, 0.9), step_height=st.just(0.0) | st.floats(1e-9, 0.2),
     hip_height=st.floats(0.3, 0.7), robot_mass=st.just(0.0) | st.floats(1e-9, 200.0))
@@ -46,7 +46,7 @@ def test_a_standing_foot_goes_back_at_the_forward_speed(part: float) -> None:
 
 
 @given(trot=trots, stride=strides)
-def test_the_foot_moves_as_its_derivatives_say(trot: Trot, stride: float) -> None:
+def test_the_foot_moves_as_its_derivatives_say(trot: TrotParameters, stride: float) -> None:
     """
     Central differences over 1e-5 of a stride against the speeds and accelerations given.
 
@@ -89,7 +89,7 @@ def test_the_foot_swings_as_high_as_the_step() -> None:
 
 
 @given(trot=trots, stride=strides)
-def test_the_weight_is_carried_at_any_time(trot: Trot, stride: float) -> None:
+def test_the_weight_is_carried_at_any_time(trot: TrotParameters, stride: float) -> None:
     """
     Two feet of each diagonal pair, half a stride apart, carry m g together (G4).
 
