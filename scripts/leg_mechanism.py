@@ -3,7 +3,7 @@
 import isa_ros
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_speeds, leg_motion,
     LEG_STATE, leg_step)
@@ -24,7 +24,7 @@ class LegMechanism:
 
     def __init__(self, config: LegConfig, mounting: isa_ros.Mounting) -> None:
         start = config.start
-        leg = Leg(config.sheet, Pose(
+        leg = Leg(config.sheet, LegPose(
             haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
             foot_height=start.foot_height_mm * 1e-3), mounting.step_ns)
         self._leg = leg_record(config.sheet)[0]

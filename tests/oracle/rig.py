@@ -8,7 +8,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 import numpy as np
 from tests.legs import leg_sheet
@@ -18,17 +18,17 @@ from tests.sheets import actuator_sheet, setpoint
 WINDOWS = 5
 
 
-def hanging(foot_height: float) -> Pose:
+def hanging(foot_height: float) -> LegPose:
     """Return the pose of the shipped drop with the foot elsewhere above the ground (m)."""
-    return Pose(haa=0.0, hfe=math.radians(41.3), kfe=math.radians(-80.0),
-                foot_height=foot_height)
+    return LegPose(haa=0.0, hfe=math.radians(41.3), kfe=math.radians(-80.0),
+                   foot_height=foot_height)
 
 
 @dataclass
 class Rig:
     """HAA smart manifold, HFE and KFE ISA v5 on the HyQ-REAL leg, constant supply."""
 
-    pose: Pose
+    pose: LegPose
     leg: LegSheet = field(default_factory=leg_sheet)
     sheets: tuple[ActuatorSheet, ...] = field(default_factory=lambda: (
         actuator_sheet('smart_manifold'), actuator_sheet('isa_v5'), actuator_sheet('isa_v5')))

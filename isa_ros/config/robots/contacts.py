@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.config.models.catalogue import material_section
 from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.patterns import sections_by_name
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.parameter_sets import build
@@ -75,7 +75,7 @@ class Contacts(Named):
 
 
 def contacts_of(
-        given: YamlTree, ground: Ground | None, tree: Tree,
+        given: YamlTree, ground: Ground | None, tree: RobotTree,
         place: Place) -> tuple[ContactConfig, ...]:
     """
     Return the contacts of a file; ``ground`` is that of a contact without its own.
@@ -108,7 +108,7 @@ def contacts_of(
     return tuple(found)
 
 
-def robot_contact(own: ContactConfig, tree: Tree) -> RobotContact:
+def robot_contact(own: ContactConfig, tree: RobotTree) -> RobotContact:
     """Return a contact of the sheet of a robot, SI."""
     link, place = in_link(frame_named(tree, own.link), [MILLI * one for one in own.at_mm])
     return RobotContact(

@@ -8,7 +8,7 @@ from typing import Any
 from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.like_linkages import linkage_section
 from isa_ros.config.robots.patterns import sections_by_name
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import FLAG, InText, Key, ParameterSet, PLACED_NAME, TEXT, Value
 from isa_ros.config.text.names import refuse_bad_name
@@ -96,7 +96,7 @@ class Drives(Named):
 
 
 def drives_of(
-        given: YamlTree, linkages: Mapping[str, Section], tree: Tree,
+        given: YamlTree, linkages: Mapping[str, Section], tree: RobotTree,
         place: Place) -> tuple[tuple[DriveConfig, ...], dict[str, Section]]:
     """
     Return the drives of a file, and the section that each linkage was built from, by name.
@@ -193,7 +193,7 @@ def _refuse_range(drive: DriveConfig, link: RobotLink, place: Place) -> None:
 
 
 def _cylinder(
-        name: str, actuator: str, own: YamlTree, section: Section, tree: Tree,
+        name: str, actuator: str, own: YamlTree, section: Section, tree: RobotTree,
         place: Place) -> DriveConfig:
     """Return a cylinder between two links that move against each other."""
     if 'joint' in own:
@@ -225,7 +225,7 @@ def _cylinder(
             _unit_between(tree, frames[ends[0]].link, frames[ends[1]].link)))
 
 
-def _unit_between(tree: Tree, a: int, b: int) -> str:
+def _unit_between(tree: RobotTree, a: int, b: int) -> str:
     """Return the unit of the joint between two links of the tree, of several joints both units."""
     def path(link: int) -> set[int]:
         return set() if link <= 0 else {link, *path(tree.links[link].parent)}
@@ -233,7 +233,7 @@ def _unit_between(tree: Tree, a: int, b: int) -> str:
     return 'mm' if kinds == {'prismatic'} else 'deg' if kinds == {'revolute'} else 'deg | mm'
 
 
-def robot_drive(own: DriveConfig, tree: Tree) -> RobotDrive:
+def robot_drive(own: DriveConfig, tree: RobotTree) -> RobotDrive:
     """Return a drive of the sheet of a robot, SI."""
     if not isinstance(own.linkage, Cylinder):
         names = [link.joint.name for link in tree.links]

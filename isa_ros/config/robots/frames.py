@@ -1,11 +1,11 @@
 """Frames of the links of a URDF, and points in them."""
 
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.surroundings.bodies.robot.sheet import RobotFrame
 import numpy as np
 
 
-def frame_named(tree: Tree, name: str | None) -> RobotFrame:
+def frame_named(tree: RobotTree, name: str | None) -> RobotFrame:
     """Return the frame of a link of the URDF, which there is."""
     return next(frame for frame in tree.frames if frame.name == name)
 

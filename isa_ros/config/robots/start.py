@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.config.robots.geometry import point, poses, quaternion
 from isa_ros.config.robots.patterns import numbers_by_name
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.robots.urdf_numbers import Pose, turned
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import InText, Key, Leaf, ParameterSet, ValueKind
@@ -77,7 +77,7 @@ START = KeyTable((
 
 
 def start_of(
-        values: Mapping[str, Any], tree: Tree, before: RobotStartConfig | None,
+        values: Mapping[str, Any], tree: RobotTree, before: RobotStartConfig | None,
         place: Place) -> RobotStartConfig:
     """
     Return the start of the values of `START`; joints that it leaves out are as ``before``.
@@ -112,7 +112,7 @@ def start_of(
     return RobotStartConfig(values['root'], *found)
 
 
-def coordinates(start: RobotStartConfig, tree: Tree) -> tuple[float, ...]:
+def coordinates(start: RobotStartConfig, tree: RobotTree) -> tuple[float, ...]:
     """Return the coordinates of the joints, rad or m, (n,)."""
     return tuple(
         math.radians(start.joints_deg[link.joint.name]) if link.joint.kind == 'revolute'
@@ -120,7 +120,7 @@ def coordinates(start: RobotStartConfig, tree: Tree) -> tuple[float, ...]:
 
 
 def root_pose(
-        start: RobotStartConfig, tree: Tree, contacts: tuple[RobotContact, ...]) -> Pose:
+        start: RobotStartConfig, tree: RobotTree, contacts: tuple[RobotContact, ...]) -> Pose:
     """Return the pose of the root in the world."""
     own = start.root
     turn = turned(*(math.radians(angle) for angle in (
@@ -133,7 +133,7 @@ def root_pose(
 
 
 def robot_start(
-        start: RobotStartConfig, tree: Tree, contacts: tuple[RobotContact, ...],
+        start: RobotStartConfig, tree: RobotTree, contacts: tuple[RobotContact, ...],
         passive: tuple[str, ...]) -> RobotStart:
     """Return the start of the sheet, SI."""
     own = start.root
@@ -145,7 +145,7 @@ def robot_start(
 
 
 def refuse_start(
-        start: RobotStartConfig, tree: Tree, contacts: tuple[RobotContact, ...],
+        start: RobotStartConfig, tree: RobotTree, contacts: tuple[RobotContact, ...],
         place: Place) -> None:
     """Refuse a robot that starts in the ground."""
     root = root_pose(start, tree, contacts)

@@ -20,7 +20,7 @@ _KINDS: dict[str, JointKind] = {
     'revolute': 'revolute', 'continuous': 'revolute', 'prismatic': 'prismatic'}
 
 
-class Tree(NamedTuple):
+class RobotTree(NamedTuple):
     """Links of a robot in depth-first order, and the frames of the links of its URDF."""
 
     links: tuple[RobotLink, ...]
@@ -35,7 +35,7 @@ class _Part(NamedTuple):
     """In the axes of the link of the tree."""
 
 
-def tree_of(urdf: Urdf, is_free: bool, where: str) -> Tree:
+def tree_of(urdf: Urdf, is_free: bool, where: str) -> RobotTree:
     """
     Return the tree of a URDF; messages begin with ``where``.
 
@@ -81,7 +81,7 @@ def tree_of(urdf: Urdf, is_free: bool, where: str) -> Tree:
                     rotation=_matrix(origin.rotation @ z_turn), low=onward.low,
                     high=onward.high), z_turn)
     add(root, -1, RobotJoint(name=ROOT_JOINT, kind='free' if is_free else 'fixed'), np.eye(3))
-    return Tree(tuple(links), tuple(frames))
+    return RobotTree(tuple(links), tuple(frames))
 
 
 def _body_of(

@@ -5,7 +5,7 @@ from itertools import chain
 import math
 from typing import Any
 
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable, Named
 from isa_ros.config.text.keys import choice_of, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.sections import Place, section_at
@@ -59,7 +59,7 @@ def _values(link: RobotLink) -> LinkValues:
         com=link.com, inertia=link.inertia)
 
 
-class Links(Named):
+class LinkSections(Named):
     """Sections by the names of a URDF, which may have capital letters."""
 
     def read(self, tree: Any, place: Place) -> dict[str, Any]:
@@ -81,11 +81,11 @@ FRAME = KeyTable((
     rest=Key('values', ParameterSet(FramePlace), '', of=lambda frame: FramePlace(
         place=frame.place, rotation=tuple(chain(*frame.rotation)))))
 TREE = KeyTable((
-    Key('links', Links(LINK), 'links in depth-first order, the root first'),
-    Key('frames', Links(FRAME), 'the links of the URDF')))
+    Key('links', LinkSections(LINK), 'links in depth-first order, the root first'),
+    Key('frames', LinkSections(FRAME), 'the links of the URDF')))
 
 
-def tree_from(values: dict[str, Any]) -> Tree:
+def tree_from(values: dict[str, Any]) -> RobotTree:
     """Return the tree of the values of `TREE`."""
     links = []
     for name, own in values['links'].items():
@@ -100,7 +100,7 @@ def tree_from(values: dict[str, Any]) -> Tree:
     frames = [RobotFrame(name=name, link=own['link'], place=vector(own['values'].place),
                          rotation=_matrix(own['values'].rotation))
               for name, own in values['frames'].items()]
-    return Tree(tuple(links), tuple(frames))
+    return RobotTree(tuple(links), tuple(frames))
 
 
 def _matrix(numbers_of: tuple[float, ...]) -> Any:

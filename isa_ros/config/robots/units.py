@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from isa_ros.config.robots.frames import frame_named, in_link
-from isa_ros.config.robots.tree import Tree
+from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT
 from isa_ros.config.text.sections import Place
@@ -33,7 +33,7 @@ UNIT = KeyTable((
     rest=Key('sheet', ParameterSet(InertialUnitSheet), 'the unit'))
 
 
-def refuse_units(units: Sequence[UnitConfig], tree: Tree, step_ns: int, place: Place) -> None:
+def refuse_units(units: Sequence[UnitConfig], tree: RobotTree, step_ns: int, place: Place) -> None:
     """
     Refuse units on a link that the tree does not have, or with a period beside the ticks.
 
@@ -51,7 +51,7 @@ def refuse_units(units: Sequence[UnitConfig], tree: Tree, step_ns: int, place: P
         own.sheet.period_ns(step_ns, str(place / own.name))
 
 
-def robot_unit(own: UnitConfig, tree: Tree, step_ns: int, key: int) -> RobotUnit:
+def robot_unit(own: UnitConfig, tree: RobotTree, step_ns: int, key: int) -> RobotUnit:
     """Return a unit of the sheet of a robot, SI, with its key of the noise."""
     frame, sheet = frame_named(tree, own.link), own.sheet
     link, at = in_link(frame, [MILLI * one for one in (sheet.x_mm, sheet.y_mm, sheet.z_mm)])

@@ -25,7 +25,7 @@ from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.impact import foot_mass
 from isa_ros.surroundings.bodies.leg.inertial import Imu
-from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose, sample_fields
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, LegPose, sample_fields
 from isa_ros.surroundings.bodies.leg.messages import joint_name, leg_messages
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
@@ -193,8 +193,8 @@ class LegConfig(BodyConfig):
 
     def body(self, made: Made) -> Leg:
         """Return the leg; as `BodyConfig.body`."""
-        pose = Pose(**{joint: self.start.angle(joint) for joint in JOINTS},
-                    foot_height=self.start.foot_height_mm * MILLI)
+        pose = LegPose(**{joint: self.start.angle(joint) for joint in JOINTS},
+                       foot_height=self.start.foot_height_mm * MILLI)
         return Leg(self.sheet, pose, made.step_ns, made.rows,
                    release_ns=round(self.start.release_s * NS_PER_SECOND),
                    units=self._units(made.step_ns, made.seed))

@@ -23,7 +23,7 @@ from isa_ros.core.elementary import atan2
 from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.messages import imu_frame, joint_name, SLIDER
-from isa_ros.surroundings.bodies.leg.sheet import JOINTS, Link
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegLink
 from isa_ros.surroundings.linkage import levers, rod_eye
 from isa_ros.surroundings.linkage_sheet import Direct, FourBar, Joint, linkage_record
 import numpy as np
@@ -71,7 +71,7 @@ def _bodies(run: RunConfig, leg: LegConfig) -> Iterator[str]:
     names = ['slider_link', 'hip', 'thigh', 'calf']
     for joint, parent, child in zip(JOINTS, names, names[1:]):
         sheet: Joint = getattr(leg.sheet, joint)
-        link: Link = getattr(body, child)
+        link: LegLink = getattr(body, child)
         low, high = math.radians(sheet.low_deg), math.radians(sheet.high_deg)
         yield from _joint(
             joint_name(joint), 'revolute', f'{own}{parent}', f'{own}{child}', *places[joint],

@@ -19,7 +19,7 @@ from isa_ros.config.robots.patterns import names_in
 from isa_ros.config.robots.reach import reach_of, refuse_lever, refuse_stroke
 from isa_ros.config.robots.start import (
     coordinates, refuse_start, robot_start, RobotStartConfig, root_pose, START, start_of)
-from isa_ros.config.robots.tree import Tree, tree_of
+from isa_ros.config.robots.tree import RobotTree, tree_of
 from isa_ros.config.robots.tree_text import TREE, tree_from
 from isa_ros.config.robots.units import errors_of, refuse_units, robot_unit, UNIT, UnitConfig
 from isa_ros.config.robots.urdf import load_urdf
@@ -79,7 +79,7 @@ class RobotConfig(BodyConfig):
 
     urdf: str
     """Its name."""
-    tree: Tree
+    tree: RobotTree
     drives: tuple[DriveConfig, ...]
     passive: tuple[str, ...]
     """Joints without a drive."""
@@ -274,7 +274,7 @@ def _length(own: DriveConfig) -> str:
     return f'its retracted_length_mm = {own.linkage.retracted_length_mm:g} mm'
 
 
-def _tree_of(name: str, is_free: bool, place: Place) -> Tree:
+def _tree_of(name: str, is_free: bool, place: Place) -> RobotTree:
     """Return the tree of a URDF beside the run file, or of a shipped one."""
     path = place.folder / name
     where = f'{place / "urdf"} = {name}'

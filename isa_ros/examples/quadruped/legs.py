@@ -101,7 +101,7 @@ def place_feet(speeds, turning, paths, points, frames, origins, feet, velocities
                 velocities[k, a] += jacobians[k, a, m] * speeds[i - 1]
 
 
-class Tree(NamedTuple):
+class LegsTree(NamedTuple):
     """Of n links and f legs: joint i - 1 moves link i, `paths_of`, feet in their last links."""
 
     parents: np.ndarray
@@ -113,7 +113,7 @@ class Tree(NamedTuple):
     points: np.ndarray
 
 
-class Motion(NamedTuple):
+class RobotMotion(NamedTuple):
     """Rotation of the root, (3, 3), its angular velocity, (3,), and all joints, (n - 1,)."""
 
     root: np.ndarray
@@ -137,8 +137,8 @@ class Updated(NamedTuple):
 class Updating(NamedTuple):
     """Memory of `update_legs`."""
 
-    motion: Motion
-    tree: Tree
+    motion: RobotMotion
+    tree: LegsTree
     out: Updated
 
 
@@ -201,7 +201,7 @@ class Legs:
         """Links of each leg from the trunk to the foot, (f, 3); joint i - 1 moves link i."""
         n, f = len(links), len(self.paths)
         self.mass = sheet.mass
-        tree = Tree(
+        tree = LegsTree(
             np.array([link.parent for link in links], np.int64),
             np.array([link.joint.rotation for link in links]),
             np.array([link.joint.place for link in links]),
@@ -211,7 +211,7 @@ class Legs:
         self.feet, self.velocities = np.zeros((f, 3)), np.zeros((f, 3))
         self.jacobians = np.zeros((f, 3, JOINTS))
         self._frames, self.origins = np.zeros((n, 3, 3)), np.zeros((n, 3))
-        self._motion = Motion(np.zeros((3, 3)), np.zeros(3), np.zeros(n - 1), np.zeros(n - 1))
+        self._motion = RobotMotion(np.zeros((3, 3)), np.zeros(3), np.zeros(n - 1), np.zeros(n - 1))
         self._update = Bound(update_legs, Updating(self._motion, tree, Updated(
             self._frames, self.origins, self.com, self.holding, self.feet, self.velocities,
             self.jacobians)))

@@ -60,7 +60,7 @@ class Point(Parameters):
         '1: trot, 0: stand, from this point on', '1', is_whole=True, absent=0.0, ge=0.0, le=1.0)
 
 
-class Program:
+class TrotProgram:
     """What is wanted over time, from a list of points; values of before hold where it has none."""
 
     def __init__(self, points: Sequence[Point]) -> None:
@@ -82,7 +82,7 @@ class Program:
         return self._rows[k] + part * (self._rows[k + 1] - self._rows[k]), self._steps[k]
 
 
-def program_of(trees: Any, place: Place) -> Program:
+def program_of(trees: Any, place: Place) -> TrotProgram:
     """
     Return the program of a list of points; a point has what differs from the one before.
 
@@ -105,7 +105,7 @@ def program_of(trees: Any, place: Place) -> Program:
                 f'{below}.t_s = {point.t_s:g} s, must be '
                 + (f'> {points[-1].t_s:g} s, that of the point before' if points else '0 s'))
         points.append(point)
-    return Program(points)
+    return TrotProgram(points)
 
 
 def gains_of(tree: Mapping[str, Any], place: Place) -> TrotGains:

@@ -34,7 +34,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.examples.quadruped.gait import Gait, swing, Swinging
 from isa_ros.examples.quadruped.legs import Legs, paths_of
 from isa_ros.examples.quadruped.parameters import (
-    gains_of, PROGRAM, Program, program_of, TrotGains)
+    gains_of, PROGRAM, program_of, TrotGains, TrotProgram)
 from isa_ros.examples.quadruped.stance import equations, share, Sharing, WEIGHTS
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
 import numpy as np
@@ -42,7 +42,7 @@ import numpy as np
 
 class Trot(Controller):
     """
-    Stands, squats and trots with a robot of four legs of three joints, as a `Program` wants it.
+    Stands, squats and trots with a robot of four legs of three joints, as a `TrotProgram` says.
 
     ``efforts`` are the rated forces (N | Nm) of the actuators by their names in the sheet, least
     and most, ``names`` their names in the run; ``body`` is that of the robot in the state.
@@ -56,7 +56,7 @@ class Trot(Controller):
 
     def __init__(
             self, sheet: RobotSheet, names: Mapping[str, str],
-            efforts: Mapping[str, tuple[float, float]], gains: TrotGains, program: Program,
+            efforts: Mapping[str, tuple[float, float]], gains: TrotGains, program: TrotProgram,
             body: str = 'body') -> None:
         self._sheet, self._gains, self._program, self._body = sheet, gains, program, body
         self._legs = Legs(sheet)

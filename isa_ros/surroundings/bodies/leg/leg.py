@@ -40,7 +40,7 @@ class InertialUnit(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pose:
+class LegPose:
     """Pose of a leg at rest at t = 0: joint angles (rad) and the foot's height (m)."""
 
     haa: float
@@ -63,7 +63,7 @@ class Leg(KernelBody):
     ``units`` keeps its reading in the sample until the next one.
     """
 
-    def __init__(self, sheet: LegSheet, pose: Pose, step_ns: int,
+    def __init__(self, sheet: LegSheet, pose: LegPose, step_ns: int,
                  rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None,
                  units: Sequence[InertialUnit] = ()) -> None:
         super().__init__(
@@ -89,7 +89,7 @@ class Leg(KernelBody):
             self._imus, self._periods, self._readings)
 
     @staticmethod
-    def _refuse_pose(sheet: LegSheet, pose: Pose) -> None:
+    def _refuse_pose(sheet: LegSheet, pose: LegPose) -> None:
         if not (math.isfinite(pose.foot_height) and pose.foot_height >= 0.0):
             raise ConfigError(
                 f'pose.foot_height = {pose.foot_height} m, must be >= 0 m: a held leg starts '
@@ -101,7 +101,7 @@ class Leg(KernelBody):
                     f'pose.{name} = {math.degrees(angle):g} deg, must be within '
                     f'{joint.low_deg:g}..{joint.high_deg:g} deg')
 
-    def _start(self, pose: Pose) -> None:
+    def _start(self, pose: LegPose) -> None:
         state, leg = self._state[0], self._constants[0]
         state.q_haa, state.q_hfe, state.q_kfe = pose.haa, pose.hfe, pose.kfe
         terms = terms_of(continuous(state), leg)

@@ -70,7 +70,7 @@ class Factor(NamedTuple):
     l32: float
 
 
-class Motion(NamedTuple):
+class LegMotion(NamedTuple):
     """How the leg moves at one instant; three values are those of the joints, or x y z."""
 
     acceleration: Coordinates            # m/s2, rad/s2
@@ -129,7 +129,7 @@ def terms_of(y, leg):
 
 @kernel
 def leg_motion(y, f, is_held, leg):
-    """Return the `Motion` under actuator forces: M q'' = r F + J^T f_foot - h  (L6)."""
+    """Return the `LegMotion` under actuator forces: M q'' = r F + J^T f_foot - h  (L6)."""
     m = terms_of(y, leg)
     f_haa, f_hfe, f_kfe = f
     x_haa, r_haa, dr_haa = actuator_coordinate(y.q_haa, leg.haa)
@@ -144,7 +144,7 @@ def leg_motion(y, f, is_held, leg):
         r_haa * f_haa + m.j_y_haa * f_y + m.j_z_haa * f_z - m.h_haa,
         r_hfe * f_hfe + m.j_x_hfe * f_x + m.j_y_hfe * f_y + m.j_z_hfe * f_z - m.h_hfe,
         r_kfe * f_kfe + m.j_x_kfe * f_x + m.j_y_kfe * f_y + m.j_z_kfe * f_z - m.h_kfe)
-    return Motion(
+    return LegMotion(
         acceleration=acceleration, shear_rate_x=rate_x, shear_rate_y=rate_y,
         factor=m_factor, position=(x_haa, x_hfe, x_kfe), lever=(r_haa, r_hfe, r_kfe),
         lever_rate=(dr_haa, dr_hfe, dr_kfe),

@@ -21,14 +21,14 @@ JOINTS = ('haa', 'hfe', 'kfe')
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slider(Parameters):
+class LegSlider(Parameters):
     """The vertical slider that carries the leg."""
 
     mass_kg: float = parameter('part of the slider that falls with the leg', 'kg', gt=0.0, le=1e3)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Link(Parameters):
+class LegLink(Parameters):
     """One rigid link with principal axes along those of its own frame."""
 
     length_m: float = parameter('to the next joint or to the foot', 'm', ge=0.0, le=2.0)
@@ -52,10 +52,10 @@ class RigidBodies(Parameters):
         'factor on the masses and inertias of the three links', '1', ge=0.1, le=10.0)
     hip_drop_m: float = parameter(
         'HFE axis below the HAA axis of a hanging leg', 'm', absent=0.0, ge=-2.0, le=2.0)
-    slider: Slider
-    hip: Link
-    thigh: Link
-    calf: Link
+    slider: LegSlider
+    hip: LegLink
+    thigh: LegLink
+    calf: LegLink
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +78,7 @@ def body_record(body: RigidBodies) -> np.ndarray:
     """Return the `LEG_BODY` record of a leg with its mass scale applied, shape (1,)."""
     links = {}
     for name in ('hip', 'thigh', 'calf'):
-        link: Link = getattr(body, name)
+        link: LegLink = getattr(body, name)
         links[f'l_{name}'] = link.length_m
         links[f'm_{name}'] = body.mass_scale * link.mass_kg
         for axis in 'xyz':

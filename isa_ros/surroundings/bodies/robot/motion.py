@@ -21,7 +21,7 @@ from isa_ros.surroundings.vectors import dot, three
 SMALLEST_SHEAR = 1e-100     # m: a shear that decays in the air would become denormal, and slow
 
 
-class Tree(NamedTuple):
+class TreeRecords(NamedTuple):
     """Records of a robot, and its scratch; in kernels only."""
 
     links: Any
@@ -61,12 +61,12 @@ def scratch_size(n_speeds: int, n_drives: int, n_state: int) -> int:
 
 @kernel
 def tree_of(links, speeds, drives, levers, contacts, scratch, n_state):
-    """Return the `Tree` of the records, its arrays in ``scratch``."""
+    """Return the `TreeRecords` of the records, its arrays in ``scratch``."""
     d, k = len(speeds), len(drives)
     at = d * d
     forces = at + 3 * d
     state = forces + 3 * k
-    return Tree(
+    return TreeRecords(
         links=links, speeds=speeds, drives=drives, levers=levers, contacts=contacts,
         mass=scratch[:at].reshape(d, d), bias=scratch[at:at + d],
         acceleration=scratch[at + d:at + 2 * d], response=scratch[at + 2 * d:forces],

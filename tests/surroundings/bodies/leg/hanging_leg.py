@@ -5,15 +5,15 @@ import math
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.bodies.leg import motion as kernels
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.sheet import leg_record, STANDARD_GRAVITY
 import numpy as np
 from tests.legs import leg_sheet
 
 MS = 1_000_000
 SHEET = leg_sheet()
-POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
-            foot_height=0.1)
+POSE = LegPose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
+               foot_height=0.1)
 CONSTANTS = leg_record(SHEET)[0]
 BODY = CONSTANTS.body
 

@@ -4,7 +4,7 @@ import math
 
 from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import LEG_STATE
 import numpy as np
 import pytest
@@ -24,8 +24,8 @@ def advanced(*ticks: np.ndarray) -> tuple[np.void, tuple[float, ...]]:
 
     Each tick is the window means of three actuators, (3, FORCE_WINDOWS).
     """
-    leg = Leg(leg_sheet(), Pose(haa=math.radians(13.0), hfe=math.radians(48.0),
-                                kfe=math.radians(-95.0), foot_height=0.1), STEP_NS)
+    leg = Leg(leg_sheet(), LegPose(haa=math.radians(13.0), hfe=math.radians(48.0),
+                                   kfe=math.radians(-95.0), foot_height=0.1), STEP_NS)
     holding = leg.actuator_forces
     for means in ticks:
         replies = np.zeros(3, LOAD_REPLY)

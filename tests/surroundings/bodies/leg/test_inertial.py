@@ -10,7 +10,7 @@ from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.bodies.leg import inertial
 from isa_ros.surroundings.bodies.leg.inertial import carried, Imu, link_motion, LINKS
-from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState, Coordinates
 from isa_ros.surroundings.bodies.leg.sheet import body_record
 import numpy as np
@@ -22,8 +22,8 @@ from tests.legs import leg_sheet
 MS = 1_000_000
 SHEET = leg_sheet()
 BODY = body_record(SHEET.body)[0]
-POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
-            foot_height=0.3)
+POSE = LegPose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
+               foot_height=0.3)
 PLACE = {'x_mm': 100.0, 'y_mm': -20.0, 'z_mm': 30.0}
 
 

@@ -9,7 +9,7 @@ import sys
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.bodies.leg import motion as kernels
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
@@ -122,10 +122,12 @@ def test_divergence_names_state_and_time():
 
 
 @pytest.mark.parametrize(('pose', 'message'), [
-    (Pose(haa=0.0, hfe=0.0, kfe=-1.5, foot_height=0.1), r'pose\.hfe = 0 deg, must be within 15'),
-    (Pose(haa=1.0, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = 57\.2958 deg, must be'),
-    (Pose(haa=0.0, hfe=0.8, kfe=-1.5, foot_height=-0.01), r'foot_height = -0\.01 m, must be >= 0'),
-    (Pose(haa=math.nan, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = nan deg')])
+    (LegPose(haa=0.0, hfe=0.0, kfe=-1.5, foot_height=0.1),
+     r'pose\.hfe = 0 deg, must be within 15'),
+    (LegPose(haa=1.0, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = 57\.2958 deg, must be'),
+    (LegPose(haa=0.0, hfe=0.8, kfe=-1.5, foot_height=-0.01),
+     r'foot_height = -0\.01 m, must be >= 0'),
+    (LegPose(haa=math.nan, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = nan deg')])
 def test_a_pose_the_leg_cannot_start_in_is_refused(pose, message):
     """The message has name, value, unit and bound."""
     with pytest.raises(ConfigError, match=message):
@@ -144,7 +146,7 @@ import numpy as np
 import tests.surroundings.bodies.leg.test_leg as t
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT
-leg = t.hanging(pose=t.Pose(haa=0.2, hfe=0.8, kfe=-1.6, foot_height=0.002))
+leg = t.hanging(pose=t.LegPose(haa=0.2, hfe=0.8, kfe=-1.6, foot_height=0.002))
 leg.release()
 hold = np.array(leg.actuator_forces)
 ports = rows_of(3, LOAD_PORT)

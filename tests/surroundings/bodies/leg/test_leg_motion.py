@@ -4,7 +4,7 @@ import math
 
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.surroundings.bodies.leg import motion as kernels
-from isa_ros.surroundings.bodies.leg.leg import Pose
+from isa_ros.surroundings.bodies.leg.leg import LegPose
 from isa_ros.surroundings.bodies.leg.sheet import STANDARD_GRAVITY
 import numpy as np
 import pytest
@@ -74,7 +74,7 @@ def test_runge_kutta_is_of_fourth_order():
 
 def test_standing_leg_rests_with_its_weight_on_the_ground():
     """N = m g at rest, friction within its cone, after 3 s of springs and dampers."""
-    leg = hanging(pose=Pose(haa=POSE.haa, hfe=POSE.hfe, kfe=POSE.kfe, foot_height=0.01))
+    leg = hanging(pose=LegPose(haa=POSE.haa, hfe=POSE.hfe, kfe=POSE.kfe, foot_height=0.01))
     leg.release()
     start = np.array(leg.actuator_positions)
     ports = np.zeros(3, LOAD_PORT)

@@ -11,7 +11,7 @@ from functools import cache
 import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record
 import numpy as np
@@ -28,8 +28,8 @@ ACTUATORS = pytest.mark.parametrize('j', range(3), ids=JOINTS)
 @cache
 def standing() -> tuple[Leg, np.ndarray]:
     """Return a leg that has stood on springs and dampers for 3 s, and its ports."""
-    leg = Leg(leg_sheet(), Pose(haa=math.radians(13.0), hfe=math.radians(48.0),
-                                kfe=math.radians(-95.0), foot_height=0.01), MS)
+    leg = Leg(leg_sheet(), LegPose(haa=math.radians(13.0), hfe=math.radians(48.0),
+                                   kfe=math.radians(-95.0), foot_height=0.01), MS)
     leg.release()
     start = np.array(leg.actuator_positions)
     stiffness, damping = np.array((2e3, 3e5, 3e5)), np.array((60.0, 6e3, 6e3))

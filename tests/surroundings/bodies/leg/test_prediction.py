@@ -9,7 +9,7 @@ from functools import cache
 import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import (
     continuous, joint_speeds, leg_motion, LEG_STATE, leg_step)
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record
@@ -28,8 +28,8 @@ CONSTANTS = leg_record(SHEET)[0]
 @cache
 def landing(later: int) -> tuple[Leg, np.ndarray]:
     """Return a leg ``later`` ticks after the one before it touches down, and its ports."""
-    leg = Leg(SHEET, Pose(haa=math.radians(13.0), hfe=math.radians(48.0),
-                          kfe=math.radians(-95.0), foot_height=0.0197), MS)
+    leg = Leg(SHEET, LegPose(haa=math.radians(13.0), hfe=math.radians(48.0),
+                             kfe=math.radians(-95.0), foot_height=0.0197), MS)
     leg.release()
     start, hold = np.array(leg.actuator_positions), np.array(leg.actuator_forces)
     ports, replies = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_REPLY)

@@ -6,7 +6,7 @@ import math
 from isa_ros.core.noise import noise_key
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
 from isa_ros.surroundings.bodies.leg.inertial import Imu
-from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, LegPose
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sheet import RobotStart, RobotUnit, UPRIGHT
 import numpy as np
@@ -17,8 +17,8 @@ TICK_NS = 500_000   # its windows are 0.1 ms, the longest step of the leg: both 
 TICKS = 300         # a fall of 2 cm, the impact, and standing on the springs
 RELEASE = 20
 SHEET = leg_sheet()
-POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
-            foot_height=0.02)
+POSE = LegPose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
+               foot_height=0.02)
 PORT = ('x0', 'v0', 'a0', 'inverse_mass', 'a_bias', 'jerk', 'stiffness', 'damping')
 
 
