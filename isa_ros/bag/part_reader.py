@@ -15,7 +15,7 @@ from typing import NamedTuple
 from isa_ros.bag.message_table import messages_in, MessageTable
 from isa_ros.bag.part_writer import CONTINUES, NUMBER, PART, TYPE_HASH
 from isa_ros.bag.records import (
-    chunk_content, End, FREE_RECORDS, parse_record, read_records, Record, record_at)
+    chunk_content, FileEnd, FileRecord, FREE_RECORDS, parse_record, read_records, record_at)
 from isa_ros.errors import BagError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schema
@@ -124,7 +124,7 @@ class PartReader:
         except OSError as error:
             raise BagError(f'{self.path}: cannot be read, {error.strerror}') from None
 
-    def records(self) -> Iterator[Record | End]:
+    def records(self) -> Iterator[FileRecord | FileEnd]:
         """Yield every record of the file, then its end."""
         try:
             with self.path.open('rb') as file:
@@ -134,7 +134,7 @@ class PartReader:
 
     def _scan(self) -> None:
         for record in self.records():
-            if isinstance(record, End):
+            if isinstance(record, FileEnd):
                 self.is_whole = record.is_whole
                 self.cut_bytes = record.rest
             elif isinstance(record.parsed, Chunk):
@@ -225,7 +225,7 @@ class PartReader:
                 f'and {type_name}')
         self.type_hashes[channel.topic] = channel.metadata.get(TYPE_HASH, '')
 
-    def _where(self, record: Record) -> str:
+    def _where(self, record: FileRecord) -> str:
         return f'{self.path}: damaged at byte {record.offset}'
 
 

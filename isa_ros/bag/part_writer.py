@@ -40,7 +40,7 @@ class Head(NamedTuple):
     """Definition text by type name."""
 
 
-class _Stretch(NamedTuple):
+class _OpenTicks(NamedTuple):
     """Ticks that a caller may write into the chunk by itself."""
 
     layout: Layout
@@ -66,7 +66,7 @@ class PartWriter:
         self._start_ns, self._end_ns = NO_START, NO_START
         self._counts = [0] * len(head.topics)
         self._ticks = 0
-        self._stretch: _Stretch | None = None
+        self._stretch: _OpenTicks | None = None
         try:
             self._write_head(head)
         except OSError:
@@ -120,7 +120,7 @@ class PartWriter:
         room = chunk.room(layout, max(1, min(
             CHUNK_TICKS - self._ticks, -((chunk.size - CHUNK_BYTES) // size),
             1 - (t_ns - end_ns) // step_ns)))
-        self._stretch = _Stretch(layout, range(t_ns, t_ns + room.n_ticks * step_ns, step_ns))
+        self._stretch = _OpenTicks(layout, range(t_ns, t_ns + room.n_ticks * step_ns, step_ns))
         return room
 
     def close_stretch(self, n_ticks: int) -> Chunk | None:

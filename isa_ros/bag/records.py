@@ -46,7 +46,7 @@ _OF_SUMMARY = (Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDE
 _PRIVATE = 0x80  # opcodes from here on are private to writers and are skipped
 
 
-class Record(NamedTuple):
+class FileRecord(NamedTuple):
     """One record: its offset, its opcode, its parsed form if that is needed, its bytes."""
 
     offset: int
@@ -55,7 +55,7 @@ class Record(NamedTuple):
     content: bytes
 
 
-class End(NamedTuple):
+class FileEnd(NamedTuple):
     """The end of a file: whole, or cut short at an offset."""
 
     is_whole: bool
@@ -64,9 +64,9 @@ class End(NamedTuple):
     """Bytes behind the offset, which are of an incomplete record."""
 
 
-def read_records(file: BinaryIO, where: str) -> Iterator[Record | End]:
+def read_records(file: BinaryIO, where: str) -> Iterator[FileRecord | FileEnd]:
     """
-    Yield every complete record, then the `End`.
+    Yield every complete record, then the `FileEnd`.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def read_records(file: BinaryIO, where: str) -> Iterator[Record | End]:
     while True:
         record = reader.next_record()
         yield record
-        if isinstance(record, End):
+        if isinstance(record, FileEnd):
             return
         if record.opcode == Opcode.FOOTER:
             yield reader.closing()
@@ -200,7 +200,7 @@ class _Reader:
         if not MCAP0_MAGIC.startswith(self._read(len(MCAP0_MAGIC))):
             raise BagError(f'{self._where}: is not an MCAP file (wrong opening magic)')
 
-    def next_record(self) -> Record | End:
+    def next_record(self) -> FileRecord | FileEnd:
         """Return the next complete record, or the end of a file that was cut short."""
         offset = self._position
         head = self._file.read(_HEAD_BYTES)
@@ -227,16 +227,16 @@ class _Reader:
             if self._summary_crc is None:
                 raise self._damage(offset, 'a footer before the end of the data section')
             self._check(offset, 'the summary', parsed.summary_crc, self._summary_crc)
-        return Record(offset, opcode, parsed, content)
+        return FileRecord(offset, opcode, parsed, content)
 
-    def closing(self) -> End:
+    def closing(self) -> FileEnd:
         """Return the end of the file after the footer."""
         offset = self._position
         magic = self._file.read(len(MCAP0_MAGIC) + 1)
         if magic == MCAP0_MAGIC:
-            return End(True, offset, 0)
+            return FileEnd(True, offset, 0)
         if MCAP0_MAGIC.startswith(magic):
-            return End(False, offset, len(magic))
+            return FileEnd(False, offset, len(magic))
         raise self._damage(offset, 'the closing magic is missing')
 
     def _read(self, size: int) -> bytes:
@@ -262,10 +262,10 @@ class _Reader:
         if expected not in (0, actual):  # 0: not written
             raise self._damage(offset, f'CRC of {what} is {actual:#010x}, not {expected:#010x}')
 
-    def _cut(self, offset: int) -> End:
+    def _cut(self, offset: int) -> FileEnd:
         if self._is_closed:
             raise self._damage(offset, 'a record reaches beyond the end of the file')
-        return End(False, offset, self._size - offset)
+        return FileEnd(False, offset, self._size - offset)
 
     def _damage(self, offset: int, what: str) -> BagError:
         return BagError(f'{self._where}: damaged at byte {offset}: {what}')

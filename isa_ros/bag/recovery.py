@@ -20,7 +20,7 @@ from isa_ros.bag.part_reader import PartReader
 from isa_ros.bag.part_writer import LIBRARY, NUMBER, PART, QOS, TYPE_HASH
 from isa_ros.bag.provenance import RECORD
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.records import chunk_content, chunk_records, Record
+from isa_ros.bag.records import chunk_content, chunk_records, FileRecord
 from isa_ros.core.atomic_file import replace_file, sync_directory
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
@@ -54,7 +54,7 @@ class Recovery(NamedTuple):
             f'{end / NS_PER_SECOND:.6f} s recovered{lost if self.lost_bytes else ""}')
 
 
-class _File(NamedTuple):
+class _BagFile(NamedTuple):
     """One file of the completed bag."""
 
     name: str
@@ -113,20 +113,20 @@ def _refuse_others(bag: Bag, path: Path, in_place: bool) -> None:
         raise BagError(f'{path}: has no complete chunk, so there is nothing to recover')
 
 
-def _files(bag: Bag) -> Iterator[_File]:
+def _files(bag: Bag) -> Iterator[_BagFile]:
     """Yield the files of the completed bag; one without a chunk is made from the first."""
     first = bag.parts[0]
     for number, part in enumerate(bag.parts):
         if part.is_whole or part.n_messages:
-            yield _File(part.path.name, number, part)
+            yield _BagFile(part.path.name, number, part)
         else:
-            yield _File(part.path.name, number, first, has_messages=False)
+            yield _BagFile(part.path.name, number, first, has_messages=False)
     if part.continues:  # the next file was not begun
         stem = part.path.stem.rpartition('_')[0]
-        yield _File(f'{stem}_{number + 1}.mcap', number + 1, first, has_messages=False)
+        yield _BagFile(f'{stem}_{number + 1}.mcap', number + 1, first, has_messages=False)
 
 
-def _metadata(bag: Bag, files: list[_File]) -> str:
+def _metadata(bag: Bag, files: list[_BagFile]) -> str:
     """Return the text of metadata.yaml."""
     first = bag.parts[0]
     topics = [TopicEntry(
@@ -146,7 +146,7 @@ def _has_text(path: Path, text: str) -> bool:
     return path.is_file() and path.read_bytes() == text.encode()
 
 
-def _write(directory: Path, files: list[_File]) -> None:
+def _write(directory: Path, files: list[_BagFile]) -> None:
     """Write all files to a new directory, or none."""
     try:
         directory.mkdir(parents=True)
@@ -165,7 +165,7 @@ def _write(directory: Path, files: list[_File]) -> None:
         raise
 
 
-def _replace(path: Path, file: _File) -> None:
+def _replace(path: Path, file: _BagFile) -> None:
     """Replace a file at once when its new form is complete; it is unchanged after an error."""
     temporary = path.with_name(f'.{path.name}.tmp')
     temporary.unlink(missing_ok=True)
@@ -178,13 +178,13 @@ def _replace(path: Path, file: _File) -> None:
     sync_directory(path.parent)
 
 
-def _complete(file: _File, path: Path) -> None:
+def _complete(file: _BagFile, path: Path) -> None:
     """Write a file with the complete records of its part, an index and a summary."""
     written = McapFile(path, LIBRARY)
     try:
         _declare(file.part, written)
         for record in file.part.records():
-            parsed = record.parsed if isinstance(record, Record) else None
+            parsed = record.parsed if isinstance(record, FileRecord) else None
             if isinstance(parsed, Attachment):
                 written.add_attachment(parsed.name, parsed.media_type, parsed.data)
             elif isinstance(parsed, Metadata):
