@@ -30,7 +30,7 @@ from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.circuits.heat import TankHeat
 from isa_ros.surroundings.circuits.line import Wall
-from isa_ros.surroundings.circuits.oil import Oil
+from isa_ros.surroundings.circuits.oil import CircuitOil
 from isa_ros.surroundings.circuits.sheet import Part
 from isa_ros.surroundings.dump import LagDump, NoneDump, ValveDump
 from isa_ros.surroundings.return_line import ReturnLine
@@ -86,7 +86,7 @@ def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
     return with_parts(text, {
         'run': keys(RUN), 'supplies': keys(SUPPLY_KEYS), 'supply': by_kind(SupplySheet),
-        'part': by_kind(Part), 'oil': parameters(Oil),
+        'part': by_kind(Part), 'oil': parameters(CircuitOil),
         'heat': by_kind(TankHeat), 'warm oil': parameters(MineralOil), 'wall': by_kind(Wall),
         'return line': by_kind(ReturnLine), 'dump': by_kind(NoneDump | LagDump | ValveDump),
         'emergency stop': keys(GROUP), 'record': keys(RECORD), 'publish': keys(PUBLISH_KEYS),

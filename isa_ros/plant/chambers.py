@@ -25,7 +25,7 @@ import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class Oil(Parameters):
+class ChamberOil(Parameters):
     """The enclosed oil and the leakage past the piston."""
 
     effective_bulk_modulus: float = parameter('beta_eff', 'Pa', gt=0.0, le=2.0e9)
@@ -79,7 +79,7 @@ CHAMBERS_STATE = np.dtype([
 
 
 def chambers_record(
-        drive: Cylinder | Vane | Motor, oil: Oil, inertia: float = math.inf) -> np.record:
+        drive: Cylinder | Vane | Motor, oil: ChamberOil, inertia: float = math.inf) -> np.record:
     """
     Return the `CHAMBERS` record; air of no pressure would fill any volume  (C12).
 

@@ -66,7 +66,7 @@ COIL = np.dtype([
 COIL_STATE = np.dtype([('current', 'f8'), ('mode', 'f8'), ('mode_rate', 'f8')])
 
 
-class Circuit(NamedTuple):
+class CoilCircuit(NamedTuple):
     """The two coils as the amplifier has them."""
 
     resistance: float
@@ -79,7 +79,7 @@ class Circuit(NamedTuple):
     """Whether a current can flow."""
 
 
-def circuit(sheet: Coil) -> Circuit:
+def circuit(sheet: Coil) -> CoilCircuit:
     """
     Return the circuit of the coils that are sound, and of one with shorted turns  (V19).
 
@@ -93,14 +93,14 @@ def circuit(sheet: Coil) -> Circuit:
     n_open = sheet.open_coils + (sheet.coils == 'one_open')
     if sheet.coils == 'series':
         if not turns < 1.0:
-            return Circuit(2.0 * r_1, 2.0 * l_1, 1.0, n_open == 0)
-        return Circuit(r_1 + r_2, l_1 + l_2, 2.0 / (1.0 + turns), n_open == 0)
+            return CoilCircuit(2.0 * r_1, 2.0 * l_1, 1.0, n_open == 0)
+        return CoilCircuit(r_1 + r_2, l_1 + l_2, 2.0 / (1.0 + turns), n_open == 0)
     if n_open > 0:
-        return Circuit(r_2, l_2, 2.0 / turns, n_open < 2)
+        return CoilCircuit(r_2, l_2, 2.0 / turns, n_open < 2)
     if not turns < 1.0:
-        return Circuit(0.5 * r_1, 0.5 * l_1, 2.0, True)
-    return Circuit(r_1 * r_2 / (r_1 + r_2), l_1 * l_2 / (l_1 + l_2),
-                   (1.0 + turns) / turns, True)
+        return CoilCircuit(0.5 * r_1, 0.5 * l_1, 2.0, True)
+    return CoilCircuit(r_1 * r_2 / (r_1 + r_2), l_1 * l_2 / (l_1 + l_2),
+                       (1.0 + turns) / turns, True)
 
 
 def coil_record(sheet: ClosedLoopCoil | ExplicitCoil) -> np.record:

@@ -70,7 +70,7 @@ class PlantSheet(Parameters):
     spool: (spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
             | spool.DataSheetSpool | spool.ResponseSpool)
     valve: DualGainValve | HighResponseValve | DataSheetValve
-    oil: chambers.Oil
+    oil: chambers.ChamberOil
     relief: relief.Relief
     friction: friction.Friction
     mechanics: mechanics.Mechanics

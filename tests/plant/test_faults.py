@@ -15,7 +15,7 @@ SHEET = actuator_sheet('isa_v5')
 R, L = SHEET.plant.coil.coil_resistance, SHEET.plant.coil.coil_inductance
 
 
-def coils(wired: str, **faults: float) -> coil.Circuit:
+def coils(wired: str, **faults: float) -> coil.CoilCircuit:
     return coil.circuit(replace(SHEET.plant.coil, coils=wired, **faults))
 
 

@@ -51,8 +51,9 @@ def cylinder_record() -> np.recarray:
     case.chambers = chambers.chambers_record(
         Cylinder(bore_mm=21.5, rod_mm=12.0, cap_rod_mm=0.0, stroke_mm=100.0,
                  rated_pressure_mpa=20.7),
-        chambers.Oil(effective_bulk_modulus=7e8, dead_volume_ml=1.0, cross_port_leakage=1e-13,
-                     aeration_pressure_kpa=5.0, vapour_pressure_kpa=1.0, temperature_celsius=40.0))
+        chambers.ChamberOil(
+            effective_bulk_modulus=7e8, dead_volume_ml=1.0, cross_port_leakage=1e-13,
+            aeration_pressure_kpa=5.0, vapour_pressure_kpa=1.0, temperature_celsius=40.0))
     valve = case.valve
     valve.k_low = valve.k_high = 7.5 * LPM
     valve.x_dg = valve.x_max = valve.x_l = 1.0

@@ -68,7 +68,7 @@ def fit_friction(recording: Recording) -> ForceBalance:
     if recording.duration < SHORTEST:
         return ForceBalance(values, widths)
     length = round(WINDOW / recording.step)
-    windows, shorter = (_Windows(recording, n) for n in (length, length // 2))
+    windows, shorter = (_ForceWindows(recording, n) for n in (length, length // 2))
     theta = windows.start() if windows.slides_both_ways() else None
     if theta is not None and shorter.slides_both_ways():
         free = _ALL
@@ -85,7 +85,7 @@ def fit_friction(recording: Recording) -> ForceBalance:
     return ForceBalance(values, widths)
 
 
-class _Windows:
+class _ForceWindows:
     """The integrals of a recording over windows of ``length`` samples."""
 
     def __init__(self, recording: Recording, length: int) -> None:

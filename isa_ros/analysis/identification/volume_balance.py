@@ -66,16 +66,16 @@ def fit_balance(recording: Recording, curve: FlowCurve) -> Balance:
     if recording.duration < SHORTEST:
         size = CURVE + curve.size
         return Balance(np.full(size, math.nan), np.full(size, math.inf), 0.0)
-    windows = _Windows(recording, curve, round(WINDOW / recording.step))
+    windows = _VolumeWindows(recording, curve, round(WINDOW / recording.step))
     values, widths = _fit(windows)
     slower = recording.half_rate()
-    coarse, _ = _fit(_Windows(slower, curve, round(WINDOW / slower.step)))
+    coarse, _ = _fit(_VolumeWindows(slower, curve, round(WINDOW / slower.step)))
     moved = np.abs(coarse - values)
     widths = widths + np.where(np.isfinite(moved), moved, math.inf)
     return Balance(values, widths, windows.n_good * WINDOW)
 
 
-def _fit(windows: '_Windows') -> tuple[np.ndarray, np.ndarray]:
+def _fit(windows: '_VolumeWindows') -> tuple[np.ndarray, np.ndarray]:
     values = np.full(windows.size, math.nan)
     widths = np.full(windows.size, math.inf)
     free = windows.excited()
@@ -98,7 +98,7 @@ def _fit(windows: '_Windows') -> tuple[np.ndarray, np.ndarray]:
     return values, widths
 
 
-class _Windows:
+class _VolumeWindows:
     """The integrals of a recording over windows of ``length`` samples, both chambers."""
 
     def __init__(self, recording: Recording, curve: FlowCurve, length: int) -> None:

@@ -93,7 +93,7 @@ class Circuit:
             own.nodes, own.elements, self.state, np.zeros(len(self.state)),
             np.zeros((WORK_ROWS, len(self.state))), self._held, np.zeros(n), self._n_steps,
             np.array([self._step]))
-        self._shown = tick.Shown(
+        self._shown = tick.ShownRows(
             flowing, np.zeros(n), first, is_return, self._stored, self._gas, self._oil,
             self.samples.view(np.dtype((np.record, SUPPLY_SAMPLE))),
             no_heat() if self._warmth is None else self._warmth.heating)
@@ -111,7 +111,7 @@ class Circuit:
             self._shown, groups, self._is_due, replies, answers))
         """Of replies and answers, or none: advances by one tick, which `settle` ends."""
         self.is_due = None if self._warmth is None else Bound(
-            tick.is_due, tick.Due(self._is_due))
+            tick.is_due, tick.WarmthDue(self._is_due))
         """What returns 1 where `settle` has something to do; None: it never has."""
 
     def _groups(self, rows: Sequence[Sequence[int]], heated: Sequence[Sequence[int]]

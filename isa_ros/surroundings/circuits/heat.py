@@ -14,7 +14,7 @@ from isa_ros.core.oil_properties import MineralOil, properties_record, softness,
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.phi import phi_1, phi_2
 from isa_ros.core.units import LITRE
-from isa_ros.surroundings.circuits.oil import Oil, oil_at_sheet, OilNow
+from isa_ros.surroundings.circuits.oil import CircuitOil, oil_at_sheet, OilNow
 import numpy as np
 
 
@@ -90,7 +90,7 @@ def coldest(sheet: MixedHeat, ways: np.ndarray) -> float:
         float(celsius) for conductance, celsius in ways if conductance > 0.0)))
 
 
-def oil_at(oil: Oil, sheet: MixedHeat, celsius: float) -> OilNow:
+def oil_at(oil: CircuitOil, sheet: MixedHeat, celsius: float) -> OilNow:
     """Return the oil at a temperature: nu by T1, beta by T2, of the section's at its own  (T9)."""
     own = properties_record(sheet.oil, sheet.sheet_celsius)
     return oil_at_sheet(oil, float(thickness(celsius, own)), float(softness(celsius, own)))

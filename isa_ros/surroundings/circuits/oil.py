@@ -13,7 +13,7 @@ from isa_ros.core.parameter import parameter, Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class Oil(Parameters):
+class CircuitOil(Parameters):
     """The oil of a circuit at its working temperature."""
 
     bulk_modulus: float = parameter(
@@ -38,7 +38,7 @@ class OilNow(NamedTuple):
     """Viscosity over that of the section."""
 
 
-def oil_at_sheet(oil: Oil, thickness: float = 1.0, softness: float = 1.0) -> OilNow:
+def oil_at_sheet(oil: CircuitOil, thickness: float = 1.0, softness: float = 1.0) -> OilNow:
     """Return the oil with its viscosity and its compressibility times these factors."""
     return OilNow(oil.bulk_modulus / softness, oil.density, oil.viscosity_mm2_s * thickness,
                   thickness)

@@ -16,7 +16,7 @@ from isa_ros.surroundings.circuits.check import CheckPart
 from isa_ros.surroundings.circuits.heat import CoolerPart, NoneHeat, TankHeat
 from isa_ros.surroundings.circuits.line import LinePart
 from isa_ros.surroundings.circuits.manifold import ManifoldPart, TankPart
-from isa_ros.surroundings.circuits.oil import Oil
+from isa_ros.surroundings.circuits.oil import CircuitOil
 from isa_ros.surroundings.circuits.orifice import (
     BlockPart, DumpPart, SwitchedPart, UnloadingPart)
 from isa_ros.surroundings.circuits.pump import PumpPart
@@ -42,7 +42,7 @@ class SwitchedCurrent(Parameters):
 class CircuitSupply(Parameters):
     """A circuit of named parts: pumps, lines, valves and accumulators between manifolds."""
 
-    oil: Oil = section(Oil)
+    oil: CircuitOil = section(CircuitOil)
     parts: Parameters = named_sets(Part)
     dump: SwitchedCurrent = section(SwitchedCurrent)
 

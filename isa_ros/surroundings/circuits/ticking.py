@@ -92,7 +92,7 @@ class Nodes(NamedTuple):
     """The numbers of a `FedNode` of each, (f, FED)."""
 
 
-class Shown(NamedTuple):
+class ShownRows(NamedTuple):
     """Memory of `show_rows`; the arrays as `isa_ros.surroundings.circuits.rows.show` has them."""
 
     flowing: Flowing
@@ -110,7 +110,7 @@ class Shown(NamedTuple):
 class CircuitTick(NamedTuple):
     """Memory of `advance`."""
 
-    shown: Shown
+    shown: ShownRows
     groups: Groups
     is_due: np.ndarray
     """1 once the oil has properties of another temperature, which is for Python; int64, (1,)."""
@@ -120,7 +120,7 @@ class CircuitTick(NamedTuple):
     """Their `SUPPLY_REPLY`, where the pressures moved in the tick, or none."""
 
 
-class Due(NamedTuple):
+class WarmthDue(NamedTuple):
     """Memory of `is_due`, as in `CircuitTick`."""
 
     is_due: np.ndarray
