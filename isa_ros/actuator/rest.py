@@ -19,7 +19,7 @@ from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.block_drive import LONG_AGO
 
 
-class Rows(NamedTuple):
+class RestRows(NamedTuple):
     """The rows of an actuator that `rest` reads and fills."""
 
     own: Any
@@ -46,7 +46,7 @@ def put_at_rest(
         memory: Memory, start: tuple[float, float, float, float], gains: tuple[float, float],
         mode: int, is_enabled: bool) -> None:
     """Put an actuator whose state is zero at rest, as `rest`."""
-    rest(Rows(*map(row_record, (
+    rest(RestRows(*map(row_record, (
         memory.constants, memory.continuous, memory.ports, memory.thermals, memory.reu,
         memory.channels, memory.samples, memory.replies, memory.applied))),
         start, gains, mode, is_enabled)
@@ -54,7 +54,7 @@ def put_at_rest(
 
 
 @kernel_function
-def rest(rows: Rows, start: Any, gains: Any, mode: int, is_enabled: bool) -> None:
+def rest(rows: RestRows, start: Any, gains: Any, mode: int, is_enabled: bool) -> None:
     """
     Put an actuator whose state is zero at rest; its loops hold what its sensors read.
 

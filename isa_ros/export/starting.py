@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from isa_ros.actuator.config import ConfiguredActuator
-from isa_ros.actuator.rest import rest, Rows
+from isa_ros.actuator.rest import rest, RestRows
 from isa_ros.actuator.rows import Memory
 from isa_ros.config.runs.external_config import held_forces
 from isa_ros.core.kernel import kernel
@@ -37,7 +37,7 @@ class Started(NamedTuple):
 def start_actuator(own):
     """Put the actuator at rest, as `isa_ros.actuator.rest.put_at_rest`; return 0."""
     memory, at = own.memory, own.start[0]
-    rows = Rows(
+    rows = RestRows(
         memory.constants[0], memory.continuous[0], memory.ports[0], memory.thermals[0],
         memory.reu[0], memory.channels[0], memory.samples[0], memory.replies[0],
         memory.applied[0])

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 
-class Ended(Protocol):
+class ProcessEnd(Protocol):
     """Interface of launch's event that a process has ended."""
 
     process_name: str
@@ -19,7 +19,7 @@ class LaunchState(Protocol):
         ...
 
 
-def refuse_failure(event: Ended, context: LaunchState) -> None:
+def refuse_failure(event: ProcessEnd, context: LaunchState) -> None:
     """
     Make the launch fail if a process has failed.
 

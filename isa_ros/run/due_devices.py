@@ -7,7 +7,7 @@ from isa_ros.core.kernel import kernel
 import numpy as np
 
 
-class Due(NamedTuple):
+class DevicesDue(NamedTuple):
     """Memory of `is_any_due`."""
 
     samples: np.ndarray

@@ -65,7 +65,7 @@ def pack_links(
         at += WORDS
 
 
-class Links(NamedTuple):
+class PackedLinks(NamedTuple):
     """Of the actuators with a link."""
 
     rows: np.ndarray
@@ -90,7 +90,7 @@ class LinkWords:
         self.rows = () if sent is None else tuple(rows)
         self.n_words = len(self.rows) * WORDS
         self._first = first
-        self.memory = Links(
+        self.memory = PackedLinks(
             np.array(self.rows, np.int64), np.array([FIRST_VALUE + first], np.int64), self.sent)
         """For the kernel."""
 

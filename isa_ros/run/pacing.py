@@ -89,7 +89,7 @@ class Pace:
             self._sleep(min(left, SLICE_S))
 
 
-class QuietTicks(Protocol):
+class QuietLoop(Protocol):
     """Ticks that are advanced in one call."""
 
     @property
@@ -108,7 +108,7 @@ class QuietStretch:
     def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
         self._now, self._most = now, 1
 
-    def advance(self, loop: QuietTicks, n_ticks: float) -> None:
+    def advance(self, loop: QuietLoop, n_ticks: float) -> None:
         """Advance by some quiet ticks, to the one before the last of ``n_ticks`` at most."""
         begin, first, most = self._now(), loop.ticks, self._most
         loop.advance_quietly(int(min(first + most, n_ticks - 1)))

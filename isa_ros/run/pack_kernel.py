@@ -5,7 +5,7 @@ from typing import NamedTuple
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import SAMPLE
-from isa_ros.run.link_packing import Links, pack_links, time_word_of
+from isa_ros.run.link_packing import pack_links, PackedLinks, time_word_of
 from isa_ros.run.supply_messages import SIGNALS
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from msg_adapters.template import FIRST_VALUE
@@ -21,7 +21,7 @@ _PRESSURE_A, _PRESSURE_B, _CUSHION = (_SAMPLE.index(name) for name in PRESSURES)
 _GAS, _OIL = (_SUPPLY.index(name) for name in SIGNALS[2:])
 
 
-class Target(NamedTuple):
+class PackedBlock(NamedTuple):
     """Of a `msg_adapters.template.Template`."""
 
     block: np.ndarray
@@ -43,12 +43,12 @@ class Packing(NamedTuple):
     """Floats of `SUPPLY_SAMPLE`, (m, fields)."""
     bodies: tuple[np.ndarray, ...]
     """Floats of the sample of each, one or more."""
-    links: Links
+    links: PackedLinks
     words: np.ndarray
     """Of the template, (w,)."""
     values: np.ndarray
     """The same memory as floats."""
-    target: Target
+    target: PackedBlock
 
 
 @kernel

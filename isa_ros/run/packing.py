@@ -14,8 +14,8 @@ from isa_ros.core.record import floats
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
 from isa_ros.run.link_packing import LinkWords
-from isa_ros.run.pack_kernel import pack, Packing, Target
-from isa_ros.run.quiet_recording import record, Recording
+from isa_ros.run.pack_kernel import pack, PackedBlock, Packing
+from isa_ros.run.quiet_recording import QuietRecording, record
 from isa_ros.run.rare_messages import RareMessages
 from isa_ros.run.row_messages import n_columns, Names, sources
 from isa_ros.tick.exchange import PublishedRows
@@ -80,7 +80,7 @@ class Packer:
         self._packing = Packing(
             np.zeros(3, np.int64), floats(rows.samples), rows.applied, floats(rows.supplies),
             bodies or (np.zeros(0),), self._links.memory, words, words.view(np.float64),
-            Target(template.block, template.places, template.sources))
+            PackedBlock(template.block, template.places, template.sources))
         self._pack = Bound(pack, self._packing)
         self._kinds, self._sent_kinds = rows.applied['kinds'], self._links.sent['kinds']
         self._commands = {
@@ -144,7 +144,7 @@ class Packer:
         own = next((own for own in self._recordings if own.memory.buffer is room.buffer
                     and own.memory.layout is layout and own.memory.clock is clock), None)
         if own is None:
-            own = Bound(record, Recording(
+            own = Bound(record, QuietRecording(
                 clock, self._packing, self._bytes, layout, room.buffer, np.zeros(2, np.int64)))
             self._recordings = [*self._recordings[1 - _RECORDINGS:], own]
         own.memory.place[:] = room.at, room.tick_bytes

@@ -9,7 +9,7 @@ from isa_ros.run.pack_kernel import pack, Packing
 import numpy as np
 
 
-class Recording(NamedTuple):
+class QuietRecording(NamedTuple):
     """Memory of `record`."""
 
     clock: np.ndarray

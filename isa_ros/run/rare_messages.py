@@ -12,7 +12,7 @@ from isa_ros.core.device import FIELDS, is_status_due
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
-from isa_ros.run.due_devices import Due, is_any_due
+from isa_ros.run.due_devices import DevicesDue, is_any_due
 from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
 from msg_adapters.applied_parameters import applied_parameters
 import numpy as np
@@ -38,7 +38,7 @@ class RareMessages:
         self._actuators, self._samples = actuators, samples
         self._supplies, self._supply_samples = supplies, supply_samples
         self._values = floats(samples)
-        self._due = Due(samples, np.zeros(2, np.int64))
+        self._due = DevicesDue(samples, np.zeros(2, np.int64))
         self._is_any_due = Bound(is_any_due, self._due)
         self._is_run = is_run
         self._t_ns = self._start_ns = 0

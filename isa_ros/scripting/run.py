@@ -34,14 +34,14 @@ Factories = BodyFactory | str | Mapping[str, BodyFactory | str]
 
 
 @dataclass(frozen=True)
-class _File:
+class _InputFile:
     """The content of a file, and its name for messages."""
 
     tree: Tree
     name: str
     folder: Path = Path()
 
-    def replaced(self, key: str, value: Any) -> '_File':
+    def replaced(self, key: str, value: Any) -> '_InputFile':
         return replace(self, tree=replaced(self.tree, key, value, self.name))
 
     @property
@@ -57,7 +57,7 @@ class Run:
     """
 
     def __init__(
-            self, config: _File, scenario: _File | None, duration: float | None,
+            self, config: _InputFile, scenario: _InputFile | None, duration: float | None,
             compression: str | None, split_mb: float | None) -> None:
         self._config, self._scenario_file = config, scenario
         self._options: dict[str, Any] = {
@@ -249,8 +249,8 @@ def load(
 
 
 def _changed(
-        config: _File, scenario: _File | None, changes: Mapping[str, Any]
-        ) -> tuple[_File, _File | None]:
+        config: _InputFile, scenario: _InputFile | None, changes: Mapping[str, Any]
+        ) -> tuple[_InputFile, _InputFile | None]:
     """Return both files with other values; as `Run.replace`."""
     for key, value in changes.items():
         if not key.startswith(SCENARIO):
@@ -262,9 +262,9 @@ def _changed(
     return config, scenario
 
 
-def _file(given: str | Path | Tree, directory: str) -> _File:
+def _file(given: str | Path | Tree, directory: str) -> _InputFile:
     if isinstance(given, dict):
         name = given.get('name')
-        return _File(given, f'{name}.yaml' if isinstance(name, str) else 'the dictionary')
+        return _InputFile(given, f'{name}.yaml' if isinstance(name, str) else 'the dictionary')
     path = find(str(given), directory)
-    return _File(read(path), path.name, path.parent)
+    return _InputFile(read(path), path.name, path.parent)

@@ -55,7 +55,7 @@ def watch(own):
     return 0
 
 
-class Ended(Enum):
+class QuietEnd(Enum):
     """How a call of quiet ticks has ended."""
 
     FULL = 1
@@ -89,7 +89,7 @@ class QuietTicks:
         self._program = Program(())
 
     def run(self, tick: int, most: int, sinks: Sequence[RowSink],
-            source: Source | None = None) -> tuple[int, Ended]:
+            source: Source | None = None) -> tuple[int, QuietEnd]:
         """
         Run up to ``most`` ticks after ``tick`` ones, as far as the sinks need no Python.
 
@@ -102,7 +102,7 @@ class QuietTicks:
         for sink in sinks:
             most = min(most, sink.quiet_ticks(tick))
             if not (most and sink.takes_applied(self._plan.expected)):
-                return 0, Ended.FULL
+                return 0, QuietEnd.FULL
         self._clock[0] = tick
         self._trip_times[:] = self._rows.samples['trip_time']
         self._rows.take_requests()
@@ -120,6 +120,6 @@ class QuietTicks:
         for sink in sinks:
             sink.end_quiet(tick, done)
         if place < 0:
-            return done, Ended.FULL
+            return done, QuietEnd.FULL
         parts[place].found(found)
-        return done, Ended.BEGUN if has_begun else Ended.SEEN
+        return done, QuietEnd.BEGUN if has_begun else QuietEnd.SEEN

@@ -18,7 +18,7 @@ from isa_ros.requests import merge_requests
 from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.emergency_stop import EmergencyStops
 from isa_ros.tick.exchange import Ends, Rows, RowSink, Transport
-from isa_ros.tick.quiet import Ended, QuietTicks
+from isa_ros.tick.quiet import QuietEnd, QuietTicks
 from isa_ros.tick.source import ScheduledSource, Source
 
 BEFORE_TICKS = 'between ticks'
@@ -152,15 +152,15 @@ class TickLoop:
             return
         self._lap(BEFORE_TICKS)
         kept, ended = quiet.run(tick, int(most), self.sinks, planned)
-        self.ticks += kept + (ended is Ended.SEEN)
-        if ended is not Ended.FULL:
+        self.ticks += kept + (ended is QuietEnd.SEEN)
+        if ended is not QuietEnd.FULL:
             for sink in self.sinks:
-                sink.take_time(self.ticks + (ended is Ended.BEGUN))
+                sink.take_time(self.ticks + (ended is QuietEnd.BEGUN))
         self._lap('quiet ticks')
-        if ended is Ended.SEEN:
+        if ended is QuietEnd.SEEN:
             for sink in self.sinks:
                 sink.take(self.ticks, rows)
-        elif ended is Ended.BEGUN:
+        elif ended is QuietEnd.BEGUN:
             self._finish_tick()
 
     def _quiet_now(self) -> QuietTicks | None:

@@ -11,7 +11,7 @@ from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 from isa_ros.tick.exchange import Rows, RowSink
-from isa_ros.tick.quiet import Ended
+from isa_ros.tick.quiet import QuietEnd
 from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
@@ -115,7 +115,8 @@ def test_sinks_get_the_time_first_and_the_rows_when_all_have_advanced():
 
 
 @pytest.mark.parametrize(('ended', 'ticks', 'given'), [
-    (Ended.FULL, 4, []), (Ended.SEEN, 5, ['time', 'rows']), (Ended.BEGUN, 5, ['time', 'rows'])])
+    (QuietEnd.FULL, 4, []), (QuietEnd.SEEN, 5, ['time', 'rows']),
+    (QuietEnd.BEGUN, 5, ['time', 'rows'])])
 def test_after_quiet_ticks_the_sinks_get_the_tick_that_ended_them(
         monkeypatch, ended, ticks, given):
     """Its time, and its rows; the three before it they have kept by kernels."""
@@ -130,7 +131,7 @@ def test_after_quiet_ticks_the_sinks_get_the_tick_that_ended_them(
     loop.advance_quietly(9)
     assert loop.ticks == ticks
     assert [own[:2] for own in sink.log] == [(what, 5) for what in given]
-    assert len(received) == (ended is Ended.BEGUN)
+    assert len(received) == (ended is QuietEnd.BEGUN)
 
 
 def test_quiet_ticks_are_of_the_ends_that_the_transport_has_now(monkeypatch):
