@@ -11,7 +11,7 @@ from typing import Any
 from isa_ros.actuator.link import LinkSheet
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.run_config import RUN
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import InText, Key, parameter_rows, ParameterSet, REQUIRED
 from isa_ros.config.text.parameter_sets import members
 from isa_ros.loads.sheets import LocalLoad
@@ -43,9 +43,9 @@ def _of_table(table: KeyTable, place: str) -> Iterator[tuple[str, str, str]]:
         path = f'{place}{key.name}'
         if key.in_text is InText.IF_ANY and key.default not in (REQUIRED, None):
             yield path, _words(key), key.meaning
-        section = key.kind.section if isinstance(key.kind, Named) else key.kind
+        section = key.kind.section if isinstance(key.kind, NamedSections) else key.kind
         if isinstance(section, KeyTable):
-            name = f'.{NAME}' if isinstance(key.kind, Named) else ''
+            name = f'.{NAME}' if isinstance(key.kind, NamedSections) else ''
             yield from _of_table(section, f'{path}{name}.')
 
 

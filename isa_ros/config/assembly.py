@@ -8,7 +8,7 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.actuator_config import ActuatorConfig
-from isa_ros.config.runs.body_config import BodyFactory, Made
+from isa_ros.config.runs.body_config import BodyFactory, BodyInputs
 from isa_ros.config.runs.external_config import at_rest
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.supplies import SupplyConfig
@@ -73,7 +73,7 @@ def surroundings_of(
     bodies = {}
     for own in run.bodies:
         rows = [run.index(name) for _, name in own.joints]
-        bodies[own.name] = own.body(Made(
+        bodies[own.name] = own.body(BodyInputs(
             run.step_ns, run.seed, rows, factories.get(own.name),
             [run.actuators[row] for row in rows], run.source))
     return Surroundings(

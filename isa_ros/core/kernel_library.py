@@ -36,7 +36,7 @@ _PROCESSOR = Path('/proc/cpuinfo')
 _FIRST_BYTES = 8192     # with all of the first core
 
 
-class Named(Protocol):
+class NamedKernel(Protocol):
     """A kernel with the kinds that its machine code is made for: `isa_ros.core.kernel.Entry`."""
 
     @property
@@ -109,7 +109,7 @@ def _library() -> ctypes.CDLL | None:
     return None if path is None else ctypes.CDLL(str(path))
 
 
-def _found(entry: Named) -> tuple[ctypes.CDLL, str] | None:
+def _found(entry: NamedKernel) -> tuple[ctypes.CDLL, str] | None:
     """Return the library that has an entry, and its symbol; None if there is none."""
     library = _library()
     if library is None:
@@ -122,7 +122,7 @@ def _found(entry: Named) -> tuple[ctypes.CDLL, str] | None:
     return library, symbol
 
 
-def address_in_library(entry: Named) -> int:
+def address_in_library(entry: NamedKernel) -> int:
     """Return the address of an entry's machine code in a library, 0 if none has it."""
     found = _found(entry)
     return 0 if found is None else address_in(*found)
@@ -133,7 +133,7 @@ def address_in(library: ctypes.CDLL, symbol: str) -> int:
     return ctypes.cast(library[symbol], ctypes.c_void_p).value or 0
 
 
-def call_in_library(entry: Named) -> Callable[[tuple[Any, ...]], Any] | None:
+def call_in_library(entry: NamedKernel) -> Callable[[tuple[Any, ...]], Any] | None:
     """Return what calls an entry's machine code with its arguments, None if no library has it."""
     found = _found(entry)
     return None if found is None else call_in(*found)

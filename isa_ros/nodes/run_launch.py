@@ -15,7 +15,7 @@ from typing import Any
 from ament_index_python import packages as ament_packages
 from isa_ros.config.paths import CONFIG, CONTROLLERS, find, find_drawing, SCENARIOS
 from isa_ros.config.robot_description import description_of
-from isa_ros.config.runs.leg_control import control_tag, Controllers, controllers_of, MANAGER
+from isa_ros.config.runs.leg_control import control_tag, controllers_of, MANAGER, Ros2Controllers
 from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import LegConfig, RunConfig
@@ -131,7 +131,7 @@ def _refuse_missing(installed: Container[str], given: str, packages: Iterable[st
 
 
 def _control(
-        path: Path, controllers: Controllers, own: str, of_run: list[tuple[str, str]]
+        path: Path, controllers: Ros2Controllers, own: str, of_run: list[tuple[str, str]]
         ) -> list[Node]:
     """Return the controller manager, and what loads and activates its controllers, then ends."""
     return [

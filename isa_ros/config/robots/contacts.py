@@ -8,7 +8,7 @@ from isa_ros.config.models.catalogue import material_section
 from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import RobotTree
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, section_at
@@ -64,7 +64,7 @@ CONTACT = KeyTable((
     Key('ends_run', FLAG, 'whether the run ends where it touches the ground', False)))
 
 
-class Contacts(Named):
+class Contacts(NamedSections):
     """Contacts by name, or by patterns of links, which `contacts_of` resolves."""
 
     words = 'sections by name or pattern'

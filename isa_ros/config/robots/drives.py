@@ -9,7 +9,7 @@ from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.like_linkages import linkage_section
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import RobotTree
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import FLAG, InText, Key, ParameterSet, PLACED_NAME, TEXT, Value
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.parameter_sets import build_one_of, members
@@ -85,7 +85,7 @@ DRIVE = KeyTable((
     rest=Key('linkage', ParameterSet(Linkage), 'its linkage'))
 
 
-class Drives(Named):
+class Drives(NamedSections):
     """Drives by name, or by patterns of the joints they move, which `drives_of` resolves."""
 
     words = 'sections by name or pattern'

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from isa_ros.config.robots.tree import RobotTree
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.sections import Place, section_at
 from isa_ros.core.parameter import check, numbers, parameter, Parameters
@@ -59,7 +59,7 @@ def _values(link: RobotLink) -> LinkValues:
         com=link.com, inertia=link.inertia)
 
 
-class LinkSections(Named):
+class LinkSections(NamedSections):
     """Sections by the names of a URDF, which may have capital letters."""
 
     def read(self, tree: Any, place: Place) -> dict[str, Any]:

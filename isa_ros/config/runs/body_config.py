@@ -31,7 +31,7 @@ BodyFactory = Callable[[Mounting], Body | Mechanism]
 """Returns a new body at t = 0, or the mechanism of one; called once for every simulation."""
 
 
-class Made(NamedTuple):
+class BodyInputs(NamedTuple):
     """What a body of a run is made with."""
 
     step_ns: int
@@ -83,7 +83,7 @@ class BodyConfig:
         """
         raise NotImplementedError
 
-    def body(self, made: Made) -> Body:
+    def body(self, made: BodyInputs) -> Body:
         """Return the body itself at t = 0; raises `ConfigError` if its start is not possible."""
         raise NotImplementedError
 

@@ -72,27 +72,27 @@ class ControllerConfig:
         return of_its_robot(own, self.name, run, where)
 
 
-class Named(NamedTuple):
+class NamedControllers(NamedTuple):
     """The controllers of a file, as far as it has them."""
 
     nodes: Sequence[str] = ()
     called: Sequence[ControllerConfig] = ()
 
 
-class Controllers(ValueKind):
+class ControllerSections(ValueKind):
     """A list of nodes; or sections by name, of which an empty one is a node."""
 
     words = 'list of names, or sections by name'
 
-    def read(self, tree: Any, place: Place) -> Named:
+    def read(self, tree: Any, place: Place) -> NamedControllers:
         """Return the controllers; as `ValueKind.read`."""
         if isinstance(tree, list):
-            return Named(tuple(names_at(tree, place)))
-        return Named(
+            return NamedControllers(tuple(names_at(tree, place)))
+        return NamedControllers(
             tuple(name for name, below in section_at(tree, place).items() if not below),
             controllers_at({name: below for name, below in tree.items() if below}, place))
 
-    def tree(self, value: Named) -> Any:
+    def tree(self, value: NamedControllers) -> Any:
         """Return the list, or the sections."""
         if not value.called:
             return list(value.nodes)
@@ -103,10 +103,10 @@ class Controllers(ValueKind):
         """Return a row for each section, whose values are those of its class."""
         return {name: Key(name, ValueKind(), '') for name in tree}
 
-    def leaves(self, value: Named, key: str, row: Key) -> Iterator[Leaf]:
+    def leaves(self, value: NamedControllers, key: str, row: Key) -> Iterator[Leaf]:
         """Yield the nodes, and each value of the others."""
         if value.nodes or not value.called:
-            yield Leaf(key, Named(value.nodes), row)
+            yield Leaf(key, NamedControllers(value.nodes), row)
         for own in value.called:
             yield from _leaves(own.section, f'{key}.{own.name}')
 

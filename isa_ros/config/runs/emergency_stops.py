@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.runs.supplies import SupplyConfig
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, Key, NAMES
 from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import FAULTS
@@ -48,7 +48,7 @@ GROUP = KeyTable((
         'disable, block', ['disable', 'block']),
     Key('dumps', choice_of((AT_REST, AT_ONCE, NEVER)),
         'when the dump valves of the supplies that feed them open', AT_REST)))
-GROUPS = Named(GROUP, are_placed=True)
+GROUPS = NamedSections(GROUP, are_placed=True)
 
 
 def emergency_stops_of(

@@ -10,7 +10,7 @@ from weakref import WeakSet
 
 from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.ratings import ratings_of
-from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
+from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, BodyInputs
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, NAMES, TEXT
 from isa_ros.config.text.names import parted
@@ -100,7 +100,7 @@ class ExternalConfig(BodyConfig):
         assert self.maker is not None
         return imported_factory(self.maker, f'{file}: {self.label}.class')
 
-    def body(self, made: Made) -> Body:
+    def body(self, made: BodyInputs) -> Body:
         """Return what the factory makes, with its ports in its sample; as `BodyConfig.body`."""
         factory = made.factory
         if factory is None:
@@ -141,7 +141,7 @@ class ExternalConfig(BodyConfig):
                 f'{self.label}: its factory returned the same {type(given).__name__} twice, must '
                 'make a new one at t = 0 for every simulation')
 
-    def _refuse_start(self, body: Body, made: Made) -> None:
+    def _refuse_start(self, body: Body, made: BodyInputs) -> None:
         """Refuse a start outside the stroke of an actuator."""
         starts = np.zeros(max(made.rows) + 1, START)
         body.starts(starts)

@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import leg_section, material_section
-from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
+from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyInputs
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import (
     ANY_NAME, InText, Key, Layer, of_type, ParameterSet, PLACED_NAME)
 from isa_ros.config.text.parameter_sets import build
@@ -94,7 +94,7 @@ class LegConfig(BodyConfig):
         Key('ground', ANY_NAME, 'the material under the foot', None, 'of the model',
             in_text=InText.NEVER),
         Key('start', ParameterSet(LegStart), 'pose at t = 0'),
-        Key('imus', Named(_IMU), 'inertial measurement units', {}),
+        Key('imus', NamedSections(_IMU), 'inertial measurement units', {}),
         Key('parameters', Layer(LegSheet), 'values that replace those of the model', {},
             in_text=InText.NEVER),
         Key('sheet', Layer(LegSheet), 'the whole sheet inline: of the model only the name is used',
@@ -191,7 +191,7 @@ class LegConfig(BodyConfig):
         """Return joints, contact of the foot, and readings of its inertial units."""
         return leg_messages(self.prefix, self._units(step_ns, seed=0))
 
-    def body(self, made: Made) -> Leg:
+    def body(self, made: BodyInputs) -> Leg:
         """Return the leg; as `BodyConfig.body`."""
         pose = LegPose(**{joint: self.start.angle(joint) for joint in JOINTS},
                        foot_height=self.start.foot_height_mm * MILLI)

@@ -27,7 +27,7 @@ _ALWAYS = -1
 the joint is, the difference is 0."""
 
 
-class Controllers(NamedTuple):
+class Ros2Controllers(NamedTuple):
     """The controllers of a file."""
 
     types: dict[str, str]
@@ -42,7 +42,7 @@ class Controllers(NamedTuple):
         return [MANAGER, *dict.fromkeys(plugin.partition('/')[0] for plugin in plugins)]
 
 
-def controllers_of(path: Path, body: BodyConfig) -> Controllers:
+def controllers_of(path: Path, body: BodyConfig) -> Ros2Controllers:
     """
     Return the controllers of a parameter file of ros2_control, checked against a body.
 
@@ -74,7 +74,7 @@ def controllers_of(path: Path, body: BodyConfig) -> Controllers:
     if len(set(claims.values())) > 1:
         found = '; '.join(f'{name}: {", ".join(own)}' for name, own in claims.items())
         raise ConfigError(f'{path.name}: command interfaces differ ({found}), must be the same')
-    return Controllers(types, next(iter(claims.values())))
+    return Ros2Controllers(types, next(iter(claims.values())))
 
 
 def _refuse_others(

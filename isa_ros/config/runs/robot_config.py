@@ -23,10 +23,10 @@ from isa_ros.config.robots.tree import RobotTree, tree_of
 from isa_ros.config.robots.tree_text import TREE, tree_from
 from isa_ros.config.robots.units import errors_of, refuse_units, robot_unit, UNIT, UnitConfig
 from isa_ros.config.robots.urdf import load_urdf
-from isa_ros.config.runs.body_config import BodyConfig, Made
+from isa_ros.config.runs.body_config import BodyConfig, BodyInputs
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
-from isa_ros.config.text.key_tables import KeyTable, Named
+from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, InText, Key, Layer, TEXT, Value
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
@@ -64,7 +64,7 @@ class RobotConfig(BodyConfig):
         Key('urdf', TEXT, 'a file beside the run file, or a shipped one', in_text=InText.ALWAYS),
         Key('root', choice_of((FREE, FIXED)), 'whether its root moves', FIXED,
             of=lambda own: own.tree.links[0].joint.kind),
-        Key('linkages', Named(Layer(Joint)), 'linkages that drives may be `like`', {},
+        Key('linkages', NamedSections(Layer(Joint)), 'linkages that drives may be `like`', {},
             in_text=InText.NEVER),
         Key('drives', Drives(DRIVE), 'what each actuator moves', in_text=InText.ALWAYS),
         Key('passive', Value('list of names or patterns', lambda value, place: tuple(
@@ -73,7 +73,7 @@ class RobotConfig(BodyConfig):
         Key('ground', GROUND, 'material under the contacts', None, in_text=InText.NEVER),
         Key('contacts', Contacts(CONTACT), 'points that touch the ground', {}),
         Key('start', START, 'pose at t = 0', {}),
-        Key('imus', Named(UNIT), 'inertial measurement units', {}),
+        Key('imus', NamedSections(UNIT), 'inertial measurement units', {}),
         Key('tree', TREE, 'links and frames inline: of the URDF only the name is used', None,
             in_text=InText.ONLY)))
 
@@ -258,7 +258,7 @@ class RobotConfig(BodyConfig):
         return robot_messages(self.prefix, self.sheet, list(zip(
             self.units(step_ns, seed=0), [own.link for own in self.imus])))
 
-    def body(self, made: Made) -> Robot:
+    def body(self, made: BodyInputs) -> Robot:
         """Return the robot; as `BodyConfig.body`."""
         start = robot_start(self.start, self.tree, self.sheet.contacts, self.passive)
         return Robot(

@@ -12,7 +12,7 @@ from isa_ros.config.runs.actuator_config import ACTUATOR, ActuatorConfig
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
 from isa_ros.config.runs.controller_config import (
-    ControllerConfig, CONTROLLERS, Controllers, Named as NamedControllers)
+    ControllerConfig, CONTROLLERS, ControllerSections, NamedControllers)
 from isa_ros.config.runs.emergency_stops import (
     ALL as EVERY, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.leg_config import LegConfig
@@ -21,7 +21,7 @@ from isa_ros.config.runs.publishing import PUBLISH, PublishConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import Sampled, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import OFFSET, OFFSET_NS, START_TIME, STEP, STEP_NS
-from isa_ros.config.text.key_tables import KeyTable, Named, OneOf
+from isa_ros.config.text.key_tables import KeyTable, NamedSections, OneOf
 from isa_ros.config.text.keys import (
     InText, Key, Layer, NAME, number, ParameterSet, TEXT, Value)
 from isa_ros.config.text.names import COORDINATOR, parted, refuse_bad_name
@@ -242,23 +242,24 @@ RUN = KeyTable((
     ACCEPT, START_TIME,
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
         'required, or `supplies`', InText.NEVER),
-    Key('supplies', Named(SUPPLY_KEYS, are_placed=True), 'several supplies, instead of `supply`',
-        None, in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
+    Key('supplies', NamedSections(SUPPLY_KEYS, are_placed=True),
+        'several supplies, instead of `supply`', None, in_text=InText.ALWAYS,
+        instead_of=(SUPPLY,)),
     Key('record', RECORD, 'what is recorded', {}, 'everything'), PUBLISH,
     Key(LINK, Layer(LinkSheet), 'the link of all actuators', {}, in_text=InText.NEVER),
-    Key('actuators', Named(ACTUATOR, are_placed=True),
+    Key('actuators', NamedSections(ACTUATOR, are_placed=True),
         'the actuators by name; records have their order'),
     Key(EMERGENCY_STOPS, GROUPS, 'groups of actuators that stop together, by name', None,
         'all, by request alone', of=lambda run: run.emergency_stops or None),
-    Key(CONTROLLERS, Controllers(), 'nodes, besides the actuators, that every tick waits for; or '
-        'by name sections with a `class` that the run makes and calls', [],
+    Key(CONTROLLERS, ControllerSections(), 'nodes, besides the actuators, that every tick waits '
+        'for; or by name sections with a `class` that the run makes and calls', [],
         of=lambda run: NamedControllers(run.controllers, run.called)),
     Key(ROBOTS, Value('sections by name', refuse_nested),
         'several robots by name, each from a run file of its own', None, in_text=InText.NEVER),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
     Key(BODY, _BODY, 'what several actuators move together', None,
         of=lambda run: run.only_body),
-    Key('bodies', Named(_BODY, are_placed=True), 'several bodies by name, instead of `body`', None,
-        instead_of=('leg', BODY),
+    Key('bodies', NamedSections(_BODY, are_placed=True),
+        'several bodies by name, instead of `body`', None, instead_of=('leg', BODY),
         of=lambda run: run.bodies if run.bodies and run.only_body is None else None)))
 """Every key of a run file, and of a resolved text."""

@@ -84,7 +84,7 @@ class KeyTable(ValueKind):
 
 
 @dataclass(frozen=True)
-class Named(ValueKind):
+class NamedSections(ValueKind):
     """Sections by name, each of a configuration that has its name as a field."""
 
     section: ValueKind

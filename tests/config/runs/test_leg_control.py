@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import isa_ros
 from isa_ros.config.paths import CONTROLLERS, shipped
 from isa_ros.config.runs.leg_control import (
-    control_tag, Controllers, controllers_of, INTERFACES, PLUGIN)
+    control_tag, controllers_of, INTERFACES, PLUGIN, Ros2Controllers)
 from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.messages import JointStates
@@ -29,12 +29,12 @@ def interfaces(joint, kind):
 
 def test_the_shipped_controllers_are_for_the_modes_impedance_and_force():
     assert {name: controllers_of(path, LEG) for name, path in FILES.items()} == {
-        'leg_trajectory.yaml': Controllers({
+        'leg_trajectory.yaml': Ros2Controllers({
             'joint_state_broadcaster': 'joint_state_broadcaster/JointStateBroadcaster',
             'joint_trajectory_controller':
                 'joint_trajectory_controller/JointTrajectoryController'},
             ('position', 'velocity')),
-        'leg_torque.yaml': Controllers({
+        'leg_torque.yaml': Ros2Controllers({
             'joint_state_broadcaster': 'joint_state_broadcaster/JointStateBroadcaster',
             'torque_controller': 'forward_command_controller/ForwardCommandController'},
             ('effort',))}
