@@ -9,7 +9,7 @@ from isa_ros.cli.running import print_line, simulating
 
 if TYPE_CHECKING:
     from isa_ros.core.objects import Target
-    from isa_ros.export.chosen import Chosen
+    from isa_ros.export.chosen import ChosenActuator
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -75,7 +75,7 @@ class _Written(NamedTuple):
     files: Callable[[], Mapping[str, bytes]]
 
 
-def _library(chosen: 'Chosen', target: 'Target', options: argparse.Namespace) -> _Written:
+def _library(chosen: 'ChosenActuator', target: 'Target', options: argparse.Namespace) -> _Written:
     from isa_ros.export.exported import exported
     from isa_ros.export.library import library, names_of
     own = exported(chosen, name=options.name)
@@ -83,7 +83,7 @@ def _library(chosen: 'Chosen', target: 'Target', options: argparse.Namespace) ->
                     lambda: library(own, target, options.compiler))
 
 
-def _units(chosen: 'Chosen', target: 'Target', options: argparse.Namespace) -> _Written:
+def _units(chosen: 'ChosenActuator', target: 'Target', options: argparse.Namespace) -> _Written:
     from isa_ros.export.fmi.unit import parts_of, units
     own = parts_of(chosen, options.name)
     names = own.files

@@ -25,7 +25,7 @@ LOADS = (OWN, PORT)
 """Where the load of an exported actuator is: its own, or the caller's at its port."""
 
 
-class Chosen(NamedTuple):
+class ChosenActuator(NamedTuple):
     """An actuator of a run."""
 
     run: RunConfig
@@ -70,7 +70,7 @@ def value_of(sheet: Parameters, row: ListedValue) -> float | str:
 
 def choose(
         text: str, values: Values = MappingProxyType({}), *, preset: str | None = None,
-        variants: Sequence[str] = (), load: str | None = None) -> Chosen:
+        variants: Sequence[str] = (), load: str | None = None) -> ChosenActuator:
     """
     Return the actuator of a text MODEL, or of FILE or FILE:ACTUATOR of a run file.
 
@@ -103,7 +103,7 @@ def choose(
         raise ConfigError(f'{name!r} is not an actuator of {file}; {alternatives(name, names)}')
     values = {full_key(key, name): value for key, value in values.items()}
     run, origins = run_with_robots(changed(tree, values, place.file), place)
-    return Chosen(_with_load(run, name, load, file), origins, run.index(name), values)
+    return ChosenActuator(_with_load(run, name, load, file), origins, run.index(name), values)
 
 
 def _read(file: str, preset: str | None, variants: Sequence[str]) -> tuple[Tree, Place]:

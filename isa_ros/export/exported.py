@@ -11,7 +11,7 @@ from isa_ros.actuator.ticking import group_tick, Ticked
 from isa_ros.config.assembly import bodies_in_form, surroundings_of, timing_of
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
-from isa_ros.export.chosen import Chosen
+from isa_ros.export.chosen import ChosenActuator
 from isa_ros.export.layout import MemoryLayout
 from isa_ros.export.reserved import RESERVED
 from isa_ros.export.starting import start_actuator, Started
@@ -41,7 +41,7 @@ class Called(NamedTuple):
 class Exported:
     """An actuator and its kernels; its state is zero, as before its start."""
 
-    chosen: Chosen
+    chosen: ChosenActuator
     word: str
     """What names in C begin with."""
     actuator: SmartActuator
@@ -97,7 +97,7 @@ def word_of(actuator: str, given: str | None = None) -> str:
     return word
 
 
-def exported(chosen: Chosen, *, name: str | None = None) -> Exported:
+def exported(chosen: ChosenActuator, *, name: str | None = None) -> Exported:
     """
     Return what is exported of an actuator; names in C begin with ``name``, see `word_of`.
 

@@ -6,7 +6,7 @@ import re
 from isa_ros.core.objects import own_target
 from isa_ros.export.chosen import choose
 from isa_ros.export.fmi.unit import parts_of, units
-from isa_ros.export.fmi.variables import Role
+from isa_ros.export.fmi.variables import UnitRole
 import numpy as np
 import pytest
 
@@ -26,13 +26,13 @@ def test_all_inputs_are_in_its_tables(parts):
         for name in re.findall('`([^`]+)`', row):
             first = first if name.startswith('.') else name.partition('.')[0]
             named.add(f'{first}{name}' if name.startswith('.') else name)
-    assert {own.name for own in parts.table if own.role in (Role.INPUT, Role.START)} == {
+    assert {own.name for own in parts.table if own.role in (UnitRole.INPUT, UnitRole.START)} == {
         name for name in named if not name.startswith(('reu.', 'can'))}
 
 
 def test_named_gains_are_what_the_page_says(parts):
     roles = {own.name: own.role for own in parts.table}
-    assert roles['reu.force.kp'] is Role.TUNED and roles['reu.force.kf'] is Role.CONSTANT
+    assert roles['reu.force.kp'] is UnitRole.TUNED and roles['reu.force.kf'] is UnitRole.CONSTANT
     assert '`reu.force.kp`' in PAGE and '`reu.force.kf`' in PAGE
 
 

@@ -6,7 +6,7 @@ import isa_ros
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.device import FIELDS
 from isa_ros.core.signals import SAMPLE
-from isa_ros.export.chosen import Chosen
+from isa_ros.export.chosen import ChosenActuator
 from isa_ros.export.exported import exported
 from isa_ros.tick.exchange import RowSink
 import numpy as np
@@ -98,7 +98,7 @@ def case(request, tmp_path_factory):
     captured = Captured(simulation, row)
     simulation.loop.sinks = (captured,)
     simulation.loop.run(simulation.scenario.n_ticks)
-    own = exported(Chosen(simulation.scenario.run, {}, row, {}))
+    own = exported(ChosenActuator(simulation.scenario.run, {}, row, {}))
     directory = tmp_path_factory.mktemp(request.param)
     return Case(run.simulate(), row, captured, Loaded(written(own, directory), own.word),
                 directory)

@@ -7,7 +7,7 @@ from xml.etree import ElementTree as xml
 
 from isa_ros.core.units import in_si
 from isa_ros.core.version import VERSION
-from isa_ros.export.fmi.variables import ENUMERATIONS, Role, Type, Variable
+from isa_ros.export.fmi.variables import ENUMERATIONS, Type, UnitRole, Variable
 
 
 class Version(Enum):
@@ -40,8 +40,8 @@ CATEGORIES = {
 TYPES = {Type.REAL: 'Real', Type.INTEGER: 'Integer', Type.BOOLEAN: 'Boolean',
          Type.TEXT: 'String', Type.ENUMERATION: 'Enumeration'}
 TYPES_OF_3 = {**TYPES, Type.REAL: 'Float64', Type.INTEGER: 'Int32'}
-_CAUSALITY = {Role.TIME: 'independent', Role.INPUT: 'input', Role.OUTPUT: 'output',
-              Role.START: 'parameter', Role.TUNED: 'parameter', Role.CONSTANT: 'local'}
+_CAUSALITY = {UnitRole.TIME: 'independent', UnitRole.INPUT: 'input', UnitRole.OUTPUT: 'output',
+              UnitRole.START: 'parameter', UnitRole.TUNED: 'parameter', UnitRole.CONSTANT: 'local'}
 _BASE: Mapping[str, Mapping[str, float]] = {
     'm': {'m': 1}, 's': {'s': 1}, 'kg': {'kg': 1}, 'A': {'A': 1}, 'K': {'K': 1},
     'rad': {'rad': 1}, 'Hz': {'s': -1}, 'celsius': {'K': 1, 'offset': 273.15},
@@ -84,7 +84,7 @@ def description(about: About, table: Sequence[Variable], version: Version) -> by
     for reference, own in enumerate(table):
         if is_3:
             _write_of_3(owner, reference, own)
-        elif own.role is not Role.TIME:     # is not needed there, and importers stumble over it
+        elif own.role is not UnitRole.TIME:     # not needed there, and importers stumble over it
             _write_of_2(owner, reference, own)
     _write_structure(xml.SubElement(root, 'ModelStructure'), table, is_3)
     xml.indent(root)
@@ -111,16 +111,17 @@ def _unit(own: Variable) -> str | None:
 
 
 def _variability(own: Variable) -> str:
-    of_parameters = {Role.CONSTANT: 'constant', Role.START: 'fixed', Role.TUNED: 'tunable'}
+    of_parameters = {
+        UnitRole.CONSTANT: 'constant', UnitRole.START: 'fixed', UnitRole.TUNED: 'tunable'}
     return of_parameters.get(own.role) or (
         'continuous' if own.kind is Type.REAL else 'discrete')
 
 
 def _initial(own: Variable) -> dict[str, str]:
     """Return the attribute ``initial``, which time and inputs have not."""
-    if own.role in (Role.TIME, Role.INPUT):
+    if own.role in (UnitRole.TIME, UnitRole.INPUT):
         return {}
-    return {'initial': 'calculated' if own.role is Role.OUTPUT else 'exact'}
+    return {'initial': 'calculated' if own.role is UnitRole.OUTPUT else 'exact'}
 
 
 def _of_value(own: Variable, kind: str) -> dict[str, str]:
@@ -208,5 +209,5 @@ def _write_structure(owner: xml.Element, table: Sequence[Variable], is_3: bool) 
 
 def _outputs(table: Sequence[Variable]) -> Iterator[int]:
     for reference, own in enumerate(table):
-        if own.role is Role.OUTPUT:
+        if own.role is UnitRole.OUTPUT:
             yield reference

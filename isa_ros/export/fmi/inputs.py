@@ -14,7 +14,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import of_coordinate
-from isa_ros.export.fmi.variables import Home, Role, Type, Variable
+from isa_ros.export.fmi.variables import Home, Type, UnitRole, Variable
 from isa_ros.export.starting import start_forces
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.wiring import possible_modes
@@ -60,7 +60,7 @@ def inputs(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
 def _input(name: str, type_: Type, meaning: str, unit: str, start: float,
            bounds: Bounds | None = None, enumeration: str = '') -> Variable:
     return Variable(
-        name, type_, Role.INPUT, Home.INPUT, 0, meaning, unit, start,
+        name, type_, UnitRole.INPUT, Home.INPUT, 0, meaning, unit, start,
         None if bounds is None else bounds.low, None if bounds is None else bounds.high,
         enumeration)
 
@@ -124,4 +124,4 @@ def _start(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
                    float(start['position']), position),
             _input('start.force', Type.REAL, 'that it holds at the start, > 0 pushes out', force,
                    borne, Bounds(*start_forces(config, borne), force, ''))):
-        yield found._replace(role=Role.START)
+        yield found._replace(role=UnitRole.START)

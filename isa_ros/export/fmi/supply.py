@@ -9,7 +9,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, Records, SUPPLY_PORT, SUPPLY_REPLY
 from isa_ros.errors import ConfigError
-from isa_ros.export.chosen import Chosen
+from isa_ros.export.chosen import ChosenActuator
 from isa_ros.export.exported import Called
 from isa_ros.export.layout import MemoryLayout
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
@@ -17,7 +17,7 @@ from isa_ros.surroundings.supply_tick import Answers
 import numpy as np
 
 
-class Supplied(NamedTuple):
+class UnitSupply(NamedTuple):
     """The supply that feeds one actuator alone; a row of each record."""
 
     config: SupplyConfig
@@ -48,7 +48,7 @@ class Supplied(NamedTuple):
                              (self.ports, self.feeds, self.replies, self.fed)))
 
 
-def supplied(chosen: Chosen) -> Supplied:
+def supplied(chosen: ChosenActuator) -> UnitSupply:
     """
     Return the supply of an actuator, which it then has for itself.
 
@@ -71,11 +71,11 @@ def supplied(chosen: Chosen) -> Supplied:
     assert parts is not None    # it has no body
     before, after = (tuple(Called(part.bound.function, part.bound.memory) for part in side)
                      for side in parts)
-    return Supplied(config, surroundings.supplies[:1], ports, feeds, replies, fed,
-                    _answers(after), before, after)
+    return UnitSupply(config, surroundings.supplies[:1], ports, feeds, replies, fed,
+                      _answers(after), before, after)
 
 
-def _alone(chosen: Chosen) -> tuple[RunConfig, SupplyConfig]:
+def _alone(chosen: ChosenActuator) -> tuple[RunConfig, SupplyConfig]:
     """Return a run of nothing but the actuator and its supply, and the supply."""
     name = chosen.config.name
     own = next(supply for supply in chosen.run.supplies if name in supply.feeds).feeding([name])

@@ -8,10 +8,10 @@ from isa_ros.core.fields import Field
 from isa_ros.core.signals import LOAD_REPLY, SAMPLE_FIELDS
 from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.core.units import of_coordinate
-from isa_ros.export.chosen import Chosen, value_of
+from isa_ros.export.chosen import ChosenActuator, value_of
 from isa_ros.export.fmi.inputs import inputs
-from isa_ros.export.fmi.tuned import Tuned
-from isa_ros.export.fmi.variables import Home, Role, Type, Variable
+from isa_ros.export.fmi.tuned import TunedValue
+from isa_ros.export.fmi.variables import Home, Type, UnitRole, Variable
 from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 
@@ -23,8 +23,8 @@ _YES_OR_NO = ('is_stale',)
 
 
 def variables(
-        chosen: Chosen, supply: SupplyConfig, start: np.void, may_change: Sequence[Tuned]
-        ) -> list[Variable]:
+        chosen: ChosenActuator, supply: SupplyConfig, start: np.void,
+        may_change: Sequence[TunedValue]) -> list[Variable]:
     """
     Return all variables of the unit of an actuator with its supply.
 
@@ -36,11 +36,11 @@ def variables(
     constants = {own.name: own for own in _parameters(chosen, supply)}
     given += [
         constants.pop(name)._replace(
-            role=Role.TUNED, home=Home.INPUT, place=len(given) + k, low=own.low, high=own.high)
+            role=UnitRole.TUNED, home=Home.INPUT, place=len(given) + k, low=own.low, high=own.high)
         for k, (name, own) in enumerate(changing.items())]
     return [
         *given, *_outputs(config.sheet.is_rotary), *_placed(constants.values()),
-        Variable('time', Type.REAL, Role.TIME, Home.TIME, 0, 'simulated time', 's')]
+        Variable('time', Type.REAL, UnitRole.TIME, Home.TIME, 0, 'simulated time', 's')]
 
 
 def _outputs(is_rotary: bool) -> Iterator[Variable]:
@@ -64,17 +64,17 @@ def _sampled(
                 Type.INTEGER if field.name in _WHOLE else
                 Type.BOOLEAN if field.name in _YES_OR_NO else Type.REAL)
         yield Variable(
-            f'{prefix}{field.name}', kind, Role.OUTPUT, home, place, field.meaning,
+            f'{prefix}{field.name}', kind, UnitRole.OUTPUT, home, place, field.meaning,
             of_coordinate(field.unit, is_rotary), enumeration=_ENUMERATED.get(field.name, ''))
 
 
 def _reply(name: str, field: str, place: int, unit: str, meaning: str) -> Variable:
     offset = LOAD_REPLY.fields[field][1] if LOAD_REPLY.fields is not None else 0
-    return Variable(name, Type.REAL, Role.OUTPUT, Home.REPLY,
+    return Variable(name, Type.REAL, UnitRole.OUTPUT, Home.REPLY,
                     offset // np.dtype(float).itemsize + place, meaning, unit)
 
 
-def _parameters(chosen: Chosen, supply: SupplyConfig) -> Iterator[Variable]:
+def _parameters(chosen: ChosenActuator, supply: SupplyConfig) -> Iterator[Variable]:
     """Yield the parameters as `isa params` has them; their places are not known yet."""
     of_supply = [(row._replace(parameter=f'supply.{row.parameter}'), value_of(supply.sheet, row))
                  for row in rows(supply.sheet, {})]
@@ -86,7 +86,7 @@ def _constant(row: ListedValue, value: float | str, is_rotary: bool) -> Variable
     meaning = f'{row.meaning} ({row.source})' if row.source else row.meaning
     kind, home = ((Type.TEXT, Home.TEXT) if isinstance(value, str) else
                   (Type.REAL, Home.NUMBER))
-    return Variable(row.parameter, kind, Role.CONSTANT, home, 0, meaning,
+    return Variable(row.parameter, kind, UnitRole.CONSTANT, home, 0, meaning,
                     of_coordinate(row.unit, is_rotary), value)
 
 

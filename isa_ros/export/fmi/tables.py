@@ -5,8 +5,8 @@ import re
 
 from isa_ros.export.exported import Exported
 from isa_ros.export.fmi.inputs import modes_of, PORT_FIELDS
-from isa_ros.export.fmi.supply import Supplied
-from isa_ros.export.fmi.tuned import Tuned
+from isa_ros.export.fmi.supply import UnitSupply
+from isa_ros.export.fmi.tuned import TunedValue
 from isa_ros.export.fmi.variables import Home, Type, Variable
 from isa_ros.export.layout import ALIGNED
 from isa_ros.export.tables import number, quoted
@@ -18,7 +18,7 @@ import numpy as np
 _NOT_OF_A_WORD = re.compile('[^A-Z0-9]')
 
 
-def header(own: Exported, supply: Supplied, table: Sequence[Variable], token: str) -> str:
+def header(own: Exported, supply: UnitSupply, table: Sequence[Variable], token: str) -> str:
     """Return the text of the tables' header."""
     inputs = [variable for variable in table if variable.home is Home.INPUT]
     layout, modes = supply.layout(), possible_modes(own.chosen.config.sheet.reu)
@@ -63,7 +63,7 @@ def _declared() -> Iterator[str]:
         'uint64_t ISA(checksum)(const unsigned char *state, size_t bytes);')
 
 
-def _words(supply: Supplied) -> list[str]:
+def _words(supply: UnitSupply) -> list[str]:
     """Return the words of the tables of all kernels, one after the other."""
     layout = supply.layout()
     return [f'{{{word.value}, {int(word.is_place)}}}' for one in (*supply.before, *supply.after)
@@ -71,8 +71,8 @@ def _words(supply: Supplied) -> list[str]:
 
 
 def source(
-        own: Exported, supply: Supplied, table: Sequence[Variable], may_change: Sequence[Tuned]
-        ) -> str:
+        own: Exported, supply: UnitSupply, table: Sequence[Variable],
+        may_change: Sequence[TunedValue]) -> str:
     """Return the text of the tables."""
     inputs = {variable.name: variable.place for variable in table if variable.home is Home.INPUT}
     layout = supply.layout()

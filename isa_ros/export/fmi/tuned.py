@@ -25,7 +25,7 @@ _SCALES = (1e-4, 1e-2, 1.0)                       # and of its lower end, where 
 _FLOAT_BYTES = 8
 
 
-class Tuned(NamedTuple):
+class TunedValue(NamedTuple):
     """A value that may change while the unit runs."""
 
     name: str
@@ -36,7 +36,7 @@ class Tuned(NamedTuple):
     """In the memory of the actuator, bytes."""
 
 
-def tuned(own: Exported) -> list[Tuned]:
+def tuned(own: Exported) -> list[TunedValue]:
     """
     Return the values that the unit of an actuator may change while it runs.
 
@@ -50,7 +50,7 @@ def tuned(own: Exported) -> list[Tuned]:
     for gain in tunables(own.chosen.config.sheet).values():
         low, high = _range(gain)
         if gain.name not in GAINS and math.isfinite(high - low):
-            found += [Tuned(gain.key, low, high, base + place)
+            found += [TunedValue(gain.key, low, high, base + place)
                       for place in _places(trial, gain, low, high)]
     return found
 

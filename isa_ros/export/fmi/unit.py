@@ -11,13 +11,13 @@ from isa_ros.core.kernel import entry_of
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of, Target
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.export.chosen import Chosen
+from isa_ros.export.chosen import ChosenActuator
 from isa_ros.export.exported import Exported, exported
 from isa_ros.export.fmi import tables
 from isa_ros.export.fmi.description import About, description, Version
-from isa_ros.export.fmi.supply import Supplied, supplied
+from isa_ros.export.fmi.supply import supplied, UnitSupply
 from isa_ros.export.fmi.table import variables
-from isa_ros.export.fmi.tuned import Tuned, tuned
+from isa_ros.export.fmi.tuned import tuned, TunedValue
 from isa_ros.export.fmi.variables import Variable
 from isa_ros.export.header import filled
 from isa_ros.export.library import built, kernels_of, processor_of, texts
@@ -37,12 +37,12 @@ _DATE = (1980, 1, 1, 0, 0, 0)    # of all files, so that equal units are equal b
 _TOKEN_DIGITS = 32
 
 
-class Parts(NamedTuple):
+class UnitParts(NamedTuple):
     """An actuator, its supply, and the variables of their unit."""
 
     own: Exported
-    supply: Supplied
-    may_change: Sequence[Tuned]
+    supply: UnitSupply
+    may_change: Sequence[TunedValue]
     table: Sequence[Variable]
 
     @property
@@ -51,10 +51,10 @@ class Parts(NamedTuple):
         return {f'{self.own.word}_fmi{version.value[0]}.fmu': version for version in Version}
 
 
-class Made(NamedTuple):
+class UnitContent(NamedTuple):
     """What both versions of a unit are made of."""
 
-    parts: Parts
+    parts: UnitParts
     token: str
     sources: Mapping[str, str]
     """Texts of C by file."""
@@ -63,7 +63,7 @@ class Made(NamedTuple):
     processor: str
 
 
-def parts_of(chosen: Chosen, name: str | None = None) -> Parts:
+def parts_of(chosen: ChosenActuator, name: str | None = None) -> UnitParts:
     """
     Return the parts of an actuator's unit; ``name`` is that of the library.
 
@@ -75,17 +75,17 @@ def parts_of(chosen: Chosen, name: str | None = None) -> Parts:
     """
     own, supply = exported(chosen, name=name), supplied(chosen)
     may_change = tuned(own)
-    return Parts(own, supply, may_change,
-                 variables(chosen, supply.config, own.start[0], may_change))
+    return UnitParts(own, supply, may_change,
+                     variables(chosen, supply.config, own.start[0], may_change))
 
 
-def units(parts: Parts, target: Target, compiler: str = 'cc') -> dict[str, bytes]:
+def units(parts: UnitParts, target: Target, compiler: str = 'cc') -> dict[str, bytes]:
     """Return the files of a unit, one a version, by name; raises as `archive`."""
     own = made(parts, target)
     return {name: archive(own, version, compiler) for name, version in parts.files.items()}
 
 
-def made(parts: Parts, target: Target) -> Made:
+def made(parts: UnitParts, target: Target) -> UnitContent:
     """Return what the units are made of for a kind of processor."""
     own, supply, may_change, table = parts
     objects = kernels_of(own, target), object_of({
@@ -101,14 +101,14 @@ def made(parts: Parts, target: Target) -> Made:
     text = ''.join((*sources.values(), tables.header(own, supply, table, '')))
     token = hashlib.sha256(b''.join((*objects, text.encode()))).hexdigest()[:_TOKEN_DIGITS]
     sources['tables.h'] = tables.header(own, supply, table, token)
-    return Made(parts, token, sources, objects, processor_of(target))
+    return UnitContent(parts, token, sources, objects, processor_of(target))
 
 
 def _source(name: str) -> str:
     return (files('isa_ros.export.fmi') / 'sources' / name).read_text(encoding='utf-8')
 
 
-def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
+def archive(own: UnitContent, version: Version, compiler: str = 'cc') -> bytes:
     """
     Return the bytes of a unit, a .fmu; equal ones for equal parts and the same compiler.
 
@@ -134,7 +134,7 @@ def archive(own: Made, version: Version, compiler: str = 'cc') -> bytes:
     return found.getvalue()
 
 
-def library(own: Made, version: Version, compiler: str = 'cc') -> bytes:
+def library(own: UnitContent, version: Version, compiler: str = 'cc') -> bytes:
     """Return the shared library of a unit; raises as `archive`."""
     objects = {f'kernels_{k}.o': content for k, content in enumerate(own.objects)}
     exports = f'{{ global: fmi{version.value[0]}*; local: *; }};\n'

@@ -34,7 +34,7 @@ class Home(Enum):
     TEXT = 'constants that are texts'
 
 
-class Role(Enum):
+class UnitRole(Enum):
     """What a variable is for: causality and variability of both versions of FMI follow from it."""
 
     TIME = 'time'
@@ -58,7 +58,7 @@ class Variable(NamedTuple):
 
     name: str
     kind: Type
-    role: Role
+    role: UnitRole
     home: Home
     place: int
     meaning: str

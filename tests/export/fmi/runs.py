@@ -11,10 +11,10 @@ from isa_ros.core.objects import own_target
 from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
     HAS_SETPOINT, SAMPLE_FIELDS)
-from isa_ros.export.chosen import Chosen
+from isa_ros.export.chosen import ChosenActuator
 from isa_ros.export.fmi.description import Version
 from isa_ros.export.fmi.inputs import PORT_FIELDS
-from isa_ros.export.fmi.unit import archive, Made, made, parts_of
+from isa_ros.export.fmi.unit import archive, made, parts_of, UnitContent
 from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
 
@@ -72,8 +72,8 @@ class Case(NamedTuple):
     """A run, an actuator in it, and the unit of this with its supply."""
 
     run: isa_ros.Run
-    chosen: Chosen
-    made: Made
+    chosen: ChosenActuator
+    made: UnitContent
     first: tuple[np.void, np.void]
     """`SAMPLE` and `SUPPLY_SAMPLE` at t = 0."""
     ticks: Sequence[Tick]
@@ -95,7 +95,7 @@ def case_of(name: str, directory: Path) -> Case:
         rows = simulation.loop.rows
         ticks.append(Tick(*(own[row].copy() for own in (
             rows.ports, rows.commands, rows.samples, rows.replies)), supplies[at].copy()))
-    chosen = Chosen(run.configuration, {}, row, {})
+    chosen = ChosenActuator(run.configuration, {}, row, {})
     own = made(parts_of(chosen), own_target())
     paths = {version: directory / f'unit{version.value[0]}.fmu' for version in Version}
     for version, path in paths.items():

@@ -10,7 +10,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import choose
 from isa_ros.export.fmi.description import description, Version
 from isa_ros.export.fmi.unit import archive, made, parts_of
-from isa_ros.export.fmi.variables import Home, Role, Type
+from isa_ros.export.fmi.variables import Home, Type, UnitRole
 import pytest
 
 OF_C = {'calloc', 'free', 'malloc', 'memcmp', 'memcpy', 'memset', 'snprintf', 'strcmp', 'strlen'}
@@ -87,12 +87,13 @@ def test_inputs_and_constants_have_places_without_gaps(table):
 def test_names_are_unique_and_say_what_they_are(table):
     assert len({own.name for own in table}) == len(table)
     for own in table:
-        assert own.meaning and 'likewise' not in own.meaning or own.role is Role.OUTPUT, own.name
+        assert own.meaning and 'likewise' not in own.meaning or (
+            own.role is UnitRole.OUTPUT), own.name
 
 
 def test_what_may_be_set_starts_in_its_range(table):
     given = [own for own in table if own.home is Home.INPUT]
-    assert {own.role for own in given} == {Role.INPUT, Role.START, Role.TUNED}
+    assert {own.role for own in given} == {UnitRole.INPUT, UnitRole.START, UnitRole.TUNED}
     for own in given:
         assert own.start is not None
         assert own.low is None or own.low <= own.start, own.name
