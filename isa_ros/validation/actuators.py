@@ -1,8 +1,8 @@
 """
 The actuators that the simulated checks run: as shipped, or with one parameter changed.
 
-Every simulated check takes its benches and runs from an `Actuators`, its expected values from the
-shipped sheets (`sheets`), so that a changed parameter moves ours and not the bar.
+Every simulated check takes its benches and runs from `CheckedActuators`, its expected values from
+the shipped sheets (`sheets`), so that a changed parameter moves ours and not the bar.
 """
 
 from collections.abc import Mapping
@@ -51,7 +51,7 @@ def _number_at(roots: Mapping[str, Any], path: list[str]) -> float | None:
 
 
 @dataclass(frozen=True)
-class Actuators:
+class CheckedActuators:
     """The shipped actuators with one change, or none."""
 
     change: Change | None = None
@@ -101,4 +101,4 @@ class Actuators:
         return found.replace(values)
 
 
-SHIPPED = Actuators()
+SHIPPED = CheckedActuators()

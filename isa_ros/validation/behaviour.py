@@ -17,7 +17,7 @@ from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.loads.sheets import Blocked, Mass, static_force
 from isa_ros.plant.rest_oil import rest_pressures
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import around, Entry, Findings, OWN
 from isa_ros.validation.plant_theory import (
     blocked_rise, free_frequency, friction, holding_force, presliding, presliding_decay, steady)
@@ -49,14 +49,14 @@ PERCENT = 2.0
 NOTHING = 'no such number'
 
 
-def behaviour(actuators: Actuators = SHIPPED) -> Findings:
+def behaviour(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Compare friction, oil and valve of the simulated plants with their equations' solutions."""
     return Findings((_presliding(actuators), *(
         entry for model in MODELS for part in (_friction, _oil, _valve)
         for entry in part(actuators, model))))
 
 
-def bench(actuators: Actuators, model: str, load: str, place: float = 0.5) -> Rig:
+def bench(actuators: CheckedActuators, model: str, load: str, place: float = 0.5) -> Rig:
     """Return an actuator at a share of its stroke whose valve is driven directly."""
     found = actuators.rig(Choice(
         name=model, loop='spool', variants=('valve_amplifier',), load=load))
@@ -101,7 +101,7 @@ def _entry(
         tolerance_source=f'{expected:.4g} by {law}; {percent:g} %')
 
 
-def _friction(actuators: Actuators, model: str) -> list[Entry]:
+def _friction(actuators: CheckedActuators, model: str) -> list[Entry]:
     own = plant_of(model).friction
     free = bench(actuators, model, 'mass')
     unit, speed_unit = ('Nm', 'rad/s') if model == ROTARY else ('N', 'm/s')
@@ -123,7 +123,7 @@ def _friction(actuators: Actuators, model: str) -> list[Entry]:
     return entries
 
 
-def _presliding(actuators: Actuators) -> Entry:
+def _presliding(actuators: CheckedActuators) -> Entry:
     """
     Compare the travel under a force below friction, which the oil holds until it has leaked.
 
@@ -144,7 +144,7 @@ def _end(values: np.ndarray) -> float:
     return float(np.mean(values[-len(values) // 10:]))
 
 
-def _oil(actuators: Actuators, model: str) -> list[Entry]:
+def _oil(actuators: CheckedActuators, model: str) -> list[Entry]:
     oil, unit = plant_of(model).chambers, 'Nm' if model == ROTARY else 'N'
     free = bench(actuators, model, 'mass', NEAR_END)
     shipped = bench(SHIPPED, model, 'mass').config.load
@@ -199,7 +199,7 @@ def _decay(free: Rig, model: str) -> float:
     return float(-np.polyfit(peaks / RATE_HZ, np.log(ring[peaks]), 1)[0])
 
 
-def _valve(actuators: Actuators, model: str) -> list[Entry]:
+def _valve(actuators: CheckedActuators, model: str) -> list[Entry]:
     free = bench(actuators, model, 'mass', 0.2)
     speed_unit = 'rad/s' if model == ROTARY else 'm/s'
     entries = []

@@ -17,7 +17,7 @@ from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.plant.rest_oil import rest_pressures
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.behaviour import bench, MODELS, SHUT
 from isa_ros.validation.entry import around, Entry, Findings, OWN
 from isa_ros.validation.sheets import model_sheet, plant_of
@@ -43,13 +43,15 @@ class Torn(NamedTuple):
     """m3."""
 
 
-def cavities(actuators: Actuators = SHIPPED) -> Findings:
+def cavities(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Tear the chambers of the simulated plants open, and close them."""
     return Findings(tuple(entry for model in MODELS for entry in (
         *_sealed(actuators, model), _refilled(actuators, model))))
 
 
-def moved(actuators: Actuators, model: str, shut: dict[str, float], *strokes: float) -> Torn:
+def moved(
+        actuators: CheckedActuators, model: str, shut: dict[str, float],
+        *strokes: float) -> Torn:
     """
     Return chamber A of an actuator whose load moves ``strokes``, s each: out, back, ...
 
@@ -76,7 +78,7 @@ def moved(actuators: Actuators, model: str, shut: dict[str, float], *strokes: fl
     return Torn(oil.dead_volume + oil.area_a * place, pressure, cavity)
 
 
-def _sealed(actuators: Actuators, model: str) -> tuple[Entry, ...]:
+def _sealed(actuators: CheckedActuators, model: str) -> tuple[Entry, ...]:
     """Compare a slow stroke out and back with the mass of the oil."""
     oil = plant_of(model).chambers
     beta, p_air, p_vapour = float(oil.beta), float(oil.p_air), float(oil.p_vapour)
@@ -103,7 +105,7 @@ def _sealed(actuators: Actuators, model: str) -> tuple[Entry, ...]:
                'that before the stroke out and back, for the volume of then', 0.1))
 
 
-def _refilled(actuators: Actuators, model: str) -> Entry:
+def _refilled(actuators: CheckedActuators, model: str) -> Entry:
     """Compare how fast the oil beside a cavity grows that is held open."""
     volume, _, cavity = moved(actuators, model, SHUT, FAST_S, 0.0)
     held = np.arange(len(cavity)) >= round(FAST_S * RATE_HZ)

@@ -19,7 +19,7 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.lead_lag import demand_gain, lead_lag_record, LeadLag
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import around, as_printed, at_most, Drawing, Entry, Findings, OWN
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import model_sheet, PRESET
@@ -38,7 +38,7 @@ BARE_STEP = 1e-3           # A, small enough for the amplifier's voltage
 STEP_S = 0.05
 
 
-def current_loop(actuators: Actuators = SHIPPED) -> Findings:
+def current_loop(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Compare the current loop with figure 8, section 3.1 and Table 4, and draw it."""
     gain, open_loop = _static_gain()
     printed_kpf, lead = (cell('table_4', f'Current {row}', 'Smart manifold')
@@ -91,12 +91,12 @@ def _static_gain() -> tuple[float, np.ndarray]:
     return float(current[-1] / OPEN_LOOP_V), current
 
 
-def _rig(actuators: Actuators = SHIPPED) -> Rig:
+def _rig(actuators: CheckedActuators = SHIPPED) -> Rig:
     return actuators.rig(Choice(
         name=MANIFOLD, loop='current', preset=PRESET, variants=(EXPLICIT,)))
 
 
-def _step(actuators: Actuators, amplitude_ma: float) -> StepResponse:
+def _step(actuators: CheckedActuators, amplitude_ma: float) -> StepResponse:
     return step(_rig(actuators), STEP_S, amplitude_ma)
 
 

@@ -22,7 +22,7 @@ from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.surroundings.linkage_sheet import linkage_record
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import (
     around, Drawing, Entry, Findings, OWN, PAPER, RETUNED, TABLE_4)
 from isa_ros.validation.plots import stacked
@@ -45,7 +45,7 @@ SLOW = ('no reading of Table 4 that settles is above 30 Hz at -3 dB (paper-errat
         '5.1 infers the range from the rotary step, section 6 generalises it')
 
 
-def isa_v5(actuators: Actuators = SHIPPED) -> Findings:
+def isa_v5(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Measure the ISA v5 with both sets of gains, and the relief valves of all actuators."""
     steps = {label: step(bench, STEP_S) for label, bench in (
         ('printed gains, blocked', blocked(actuators, TABLE_4)),
@@ -59,14 +59,14 @@ def isa_v5(actuators: Actuators = SHIPPED) -> Findings:
         (_drawing(steps),))
 
 
-def blocked(actuators: Actuators, preset: str, place: float = 0.5) -> Rig:
+def blocked(actuators: CheckedActuators, preset: str, place: float = 0.5) -> Rig:
     """Return the force loop against the blocked load at a share of the stroke."""
     found = actuators.rig(Choice(name=MODEL, loop='force', preset=preset))
     return found.with_config(replace(
         found.config, initial_position=place * found.config.sheet.plant.drive.stroke))
 
 
-def rigid(actuators: Actuators, preset: str) -> Rig:
+def rigid(actuators: CheckedActuators, preset: str) -> Rig:
     """Return the force loop against a stop much stiffer than the load cell."""
     found = blocked(actuators, preset)
     assert isinstance(found.config.load, Blocked)
@@ -74,7 +74,7 @@ def rigid(actuators: Actuators, preset: str) -> Rig:
         found.config, load=replace(found.config.load, stiffness=STIFFEST)))
 
 
-def foot(actuators: Actuators, preset: str) -> Rig:
+def foot(actuators: CheckedActuators, preset: str) -> Rig:
     """Return the force loop with the foot of the knee rig on a spring."""
     leg = load_run(find('rig_knee', CONFIG)).leg
     assert leg is not None
@@ -95,7 +95,7 @@ def cell_code() -> float:
     return float(2.0 * sensors.force_range / 2 ** sensors.adc_bits)
 
 
-def _printed_gains(actuators: Actuators) -> tuple[Entry, ...]:
+def _printed_gains(actuators: CheckedActuators) -> tuple[Entry, ...]:
     rise = step(blocked(actuators, TABLE_4), STEP_S).figures.rise_time
     hunting = max(
         step(blocked(actuators, TABLE_4, place), STEP_S).figures.ripple for place in ENDS)
@@ -112,7 +112,7 @@ def _printed_gains(actuators: Actuators) -> tuple[Entry, ...]:
               gains=TABLE_4))
 
 
-def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
+def _bandwidths(actuators: CheckedActuators, gains: str) -> list[Entry]:
     low, high = (statement(f'small_signal_bandwidth_{end}') for end in ('low', 'high'))
     entries = []
     for place, bench in (('blocked', blocked), ('rigid_stop', rigid), ('foot', foot)):
@@ -127,7 +127,7 @@ def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
     return entries
 
 
-def _relief(actuators: Actuators, model: str) -> Entry:
+def _relief(actuators: CheckedActuators, model: str) -> Entry:
     """Return the cap-side pressure, valve closed, under a load above the supply's force."""
     oil = plant_of(model).chambers
     found = actuators.rig(Choice(

@@ -17,7 +17,7 @@ from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import (
     around, as_printed, at_least, at_most, Drawing, Entry, Findings, INPUT, OWN, RETUNED, TABLE_4,
     WORDS)
@@ -42,7 +42,7 @@ AS_READ = ('K_v of Table 4, read as 0.24 mm per m/s, is a quarter of the flow th
            'at 3.6 %')
 
 
-def knee_rig(actuators: Actuators = SHIPPED) -> Findings:
+def knee_rig(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Compare force steps, sine and drop of the knee with figures 14, 19 and 20."""
     found: list[Entry] = []
     for gains in (TABLE_4, RETUNED):
@@ -59,12 +59,12 @@ def knee_rig(actuators: Actuators = SHIPPED) -> Findings:
                     (_fig_14(steps), _fig_19(sine), _fig_20(drops[RIG])))
 
 
-def of_preset(actuators: Actuators, config: str, scenario: str, gains: str) -> Run:
+def of_preset(actuators: CheckedActuators, config: str, scenario: str, gains: str) -> Run:
     """Return a scenario of a leg with a preset's gains at the knee."""
     return actuators.run(config, scenario, {f'actuators.{KNEE}.preset': gains})
 
 
-def on_ground(actuators: Actuators, material: str, scenario: str, gains: str) -> Run:
+def on_ground(actuators: CheckedActuators, material: str, scenario: str, gains: str) -> Run:
     """Return the knee rig with a packaged material below the foot."""
     return of_preset(actuators, RIG, scenario, gains).replace({'leg.ground': material})
 

@@ -9,7 +9,7 @@ nothing of the other groups would notice that they moved.
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints
 from isa_ros.core.units import MILLI
 from isa_ros.paper.printed import cell
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.behaviour import (
     bench, driven, light, MODELS, pushed, ROTARY, spool_at, stall)
 from isa_ros.validation.entry import around, Entry, Findings, OWN
@@ -27,7 +27,7 @@ CREEP_MA, CREEP_S = 0.1, 0.5
 PERCENT = 2.0
 
 
-def limits(actuators: Actuators = SHIPPED) -> Findings:
+def limits(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Measure the plants at full current, near stall, at the end stop, and their readings."""
     return Findings(tuple(entry for model in MODELS for entry in (
         _full_speed(actuators, model), _loaded_speed(actuators, model),
@@ -46,7 +46,7 @@ def _speed_unit(model: str) -> str:
     return 'rad/s' if model == ROTARY else 'm/s'
 
 
-def _full_speed(actuators: Actuators, model: str) -> Entry:
+def _full_speed(actuators: CheckedActuators, model: str) -> Entry:
     """Compare the largest speed without load: the spool is at its stop."""
     spool = spool_at(model, FULL_MA)
     speed = driven(light(bench(actuators, model, 'mass', 0.1), model), spool, FULL_S)['velocity']
@@ -55,7 +55,7 @@ def _full_speed(actuators: Actuators, model: str) -> Entry:
                 'the flow curve at 5 mA, areas and friction, without load')
 
 
-def _loaded_speed(actuators: Actuators, model: str) -> Entry:
+def _loaded_speed(actuators: CheckedActuators, model: str) -> Entry:
     """Compare the speed against nearly the stall force: little pressure is left for the lands."""
     spool, force = spool_at(model, LOADED_MA), -LOADED * stall(model)
     found = pushed(bench(actuators, model, 'mass', 0.2), force)
@@ -66,7 +66,7 @@ def _loaded_speed(actuators: Actuators, model: str) -> Entry:
                 f'the lands under the {1.0 - LOADED:.0%} of pressure that the load leaves')
 
 
-def _stopped(actuators: Actuators, model: str) -> Entry:
+def _stopped(actuators: CheckedActuators, model: str) -> Entry:
     """Compare how far a held valve presses the moving part into its end stop."""
     plant, spool = plant_of(model), spool_at(model, STOP_MA)
     place = driven(bench(actuators, model, 'mass', STOP_PLACE), spool, STOP_S)['position']
@@ -76,7 +76,7 @@ def _stopped(actuators: Actuators, model: str) -> Entry:
                 f'the force of the leaking lands at {STOP_MA:g} mA over the stiffness of the stop')
 
 
-def _codes(actuators: Actuators, model: str) -> tuple[Entry, Entry]:
+def _codes(actuators: CheckedActuators, model: str) -> tuple[Entry, Entry]:
     """Compare the smallest steps of the readings of force and position in slow motions."""
     column = 'Smart manifold' if model == ROTARY else 'ISA'
     bits, encoder = (cell('table_3', f'{what} resolution', column) for what in ('ADC', 'Encoder'))
@@ -91,7 +91,7 @@ def _codes(actuators: Actuators, model: str) -> tuple[Entry, Entry]:
                     '5 %: half of its last printed digit or less'))
 
 
-def steps(actuators: Actuators, model: str, load: str, field: str) -> float:
+def steps(actuators: CheckedActuators, model: str, load: str, field: str) -> float:
     """Return the smallest step between two readings of a slowly changing field, NaN if none."""
     found = bench(actuators, model, load)
     group = found.begin(force=0.0)

@@ -15,7 +15,7 @@ from isa_ros.loads.drop_rig import (
     DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE, Wheel)
 from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import (
     around, at_least, at_most, Drawing, Entry, Findings, OWN, TABLE_4, WORDS)
 from isa_ros.validation.plots import stacked
@@ -36,7 +36,7 @@ REST_S = 0.2        # the end of a run, over which the final deflection is avera
 BAND = 0.05
 
 
-def rotary_disturbances(actuators: Actuators = SHIPPED) -> Findings:
+def rotary_disturbances(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Measure impacts and weights on the wheel; draw figures 15, 17 and 18."""
     position = actuators.run(POSITION_RIG, MIDDLE).simulate()
     hits, weights = {}, {}

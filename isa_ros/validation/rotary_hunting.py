@@ -9,7 +9,7 @@ from isa_ros.analysis.response.rig import Choice
 from isa_ros.analysis.response.step import step
 from isa_ros.config.runs.changed_parameters import Values, with_parameters
 from isa_ros.reu.block import Pid
-from isa_ros.validation.actuators import Actuators
+from isa_ros.validation.actuators import CheckedActuators
 from isa_ros.validation.entry import Observation
 from isa_ros.validation.sheets import model_sheet
 
@@ -24,7 +24,7 @@ STIFF = {'plant.mechanics.sensor_stiffness': 5e4,   # Nm/rad, the largest plausi
 WHERE = 'sections 5.1 and 6'
 
 
-def hunting(actuators: Actuators) -> tuple[Observation, ...]:
+def hunting(actuators: CheckedActuators) -> tuple[Observation, ...]:
     """
     Observe what remains of a step with the gains of Table 4, higher ones, and less rate.
 
@@ -62,7 +62,7 @@ def gains(factor: float) -> Values:
     return {'reu.force.kp': factor * force.kp, 'reu.force.ki': factor * force.ki}
 
 
-def ripple(actuators: Actuators, place: float, changes: Values) -> float:
+def ripple(actuators: CheckedActuators, place: float, changes: Values) -> float:
     """Return the deviation (Nm) that remains after a step, blocked at ``place`` (deg)."""
     bench = actuators.rig(Choice(name=RIG, loop='force', position=place))
     changed = with_parameters(bench.config, changes, bench.run.source)

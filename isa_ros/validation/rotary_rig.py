@@ -22,7 +22,7 @@ from isa_ros.paper.printed import statement
 from isa_ros.scenario.trot import foot_at, TrotParameters
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import (
     around, as_printed, at_least, Drawing, Entry, Findings, INPUT, Observation, OWN, PAPER,
     regression, RETUNED, TABLE_4, WORDS)
@@ -51,7 +51,7 @@ DAMPED_LESS = 'K_f is three quarters of that of Table 4, for the torque in motio
 DIGIT = 'approximately: half of the last printed digit'
 
 
-def rotary_rig(actuators: Actuators = SHIPPED) -> Findings:
+def rotary_rig(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Measure torque step, bandwidth, tracking and hunting; draw figures 12 and 13."""
     trots = {gains: of_preset(actuators, 'trot', gains).simulate() for gains in PRESETS}
     stepped = of_preset(actuators, 'step', TABLE_4).simulate()
@@ -66,7 +66,7 @@ def rotary_rig(actuators: Actuators = SHIPPED) -> Findings:
         (*_position(trots[TABLE_4]), *hunting(actuators)))
 
 
-def of_preset(actuators: Actuators, scenario: str, gains: str, **changes: float) -> Run:
+def of_preset(actuators: CheckedActuators, scenario: str, gains: str, **changes: float) -> Run:
     """Return a scenario of the rig with a preset's gains and other values by their REU keys."""
     return actuators.run(RIG, scenario, {
         f'actuators.{ROTOR}.preset': gains,
@@ -74,12 +74,12 @@ def of_preset(actuators: Actuators, scenario: str, gains: str, **changes: float)
            for key, value in changes.items()}})
 
 
-def blocked(actuators: Actuators, gains: str) -> Rig:
+def blocked(actuators: CheckedActuators, gains: str) -> Rig:
     """Return the torque loop of the rig's actuator against the blocked load, at mid stroke."""
     return actuators.rig(Choice(name=MANIFOLD, loop='force', preset=gains))
 
 
-def _torque_step(actuators: Actuators, gains: str) -> tuple[Entry, ...]:
+def _torque_step(actuators: CheckedActuators, gains: str) -> tuple[Entry, ...]:
     bench = blocked(actuators, gains)
     found = measured_step(bench, STEP_NM)
     printed, low = statement('torque_rise_time'), statement('blocked_bandwidth_low')
@@ -119,7 +119,7 @@ def _step_regressions(found: TorqueStep, bands: dict[str, float]) -> tuple[Entry
           for (name, ours), expected in zip(bands.items(), BANDS_HZ, strict=True)))
 
 
-def _tracking(actuators: Actuators, trot: Result, gains: str) -> tuple[Entry, ...]:
+def _tracking(actuators: CheckedActuators, trot: Result, gains: str) -> tuple[Entry, ...]:
     sine = torque_error(of_preset(actuators, 'wheel_sine', gains).simulate())
     uncompensated = torque_error(
         of_preset(actuators, 'wheel_sine', gains, kv=0.0).simulate())
@@ -183,7 +183,7 @@ def _carried() -> Entry:
         tolerance_source='the printed range; half of the last printed digit')
 
 
-def _neglected_inertia(actuators: Actuators) -> Entry:
+def _neglected_inertia(actuators: CheckedActuators) -> Entry:
     """Compare the step with that of a rotor which carries the sensor's inertia."""
     bench, ratio = blocked(actuators, TABLE_4), statement('sensor_inertia')
     wheel = of_preset(actuators, 'trot', TABLE_4).configuration.actuators[0].load

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from isa_ros.errors import ParameterError, SimulationDiverged
 from isa_ros.text.progress import Progress
-from isa_ros.validation.actuators import Actuators, Change, SUPPLY_PRESSURE
+from isa_ros.validation.actuators import Change, CheckedActuators, SUPPLY_PRESSURE
 from isa_ros.validation.entry import CheckGroup
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.workers import in_workers
@@ -141,7 +141,7 @@ def outcome(groups: Sequence[CheckGroup], change: Change | None) -> Verdicts:
     found: dict[str, bool] = {}
     for group in groups:
         try:
-            entries = group.check(Actuators(change)).entries
+            entries = group.check(CheckedActuators(change)).entries
         except (ParameterError, SimulationDiverged) as error:
             if change is None:
                 raise

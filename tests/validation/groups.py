@@ -1,7 +1,7 @@
 """Small groups of checks for the tests of the runner; a worker imports them by name."""
 
 from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
-from isa_ros.validation.actuators import Actuators, SHIPPED
+from isa_ros.validation.actuators import CheckedActuators, SHIPPED
 from isa_ros.validation.entry import (
     around, CheckGroup, Drawing, Entry, Findings, INPUT, Observation, OWN, PAPER, WORDS)
 from isa_ros.validation.plots import stacked
@@ -63,7 +63,7 @@ REFUSED = CheckGroup('refused', 'Refused', refused)
 DIVERGED = CheckGroup('diverged', 'Diverged', diverged)
 
 
-def stiff(actuators: Actuators = SHIPPED) -> Findings:
+def stiff(actuators: CheckedActuators = SHIPPED) -> Findings:
     """Measure 1 times the change; refuse more than 5 times as much, diverge beyond 3."""
     ours = 1.0 if actuators.change is None else actuators.change.factor
     if ours > 5.0:

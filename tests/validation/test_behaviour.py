@@ -4,7 +4,7 @@ import math
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.validation import behaviour, plant_theory
-from isa_ros.validation.actuators import Actuators, Change, SHIPPED
+from isa_ros.validation.actuators import Change, CheckedActuators, SHIPPED
 from isa_ros.validation.valve_flow import no_load_speed
 import pytest
 
@@ -40,7 +40,7 @@ def test_a_closed_valve_of_equal_slots_holds_nothing():
 
 def test_a_changed_parameter_moves_ours_and_not_the_bar():
     """Friction x3 under the same load stops it, but for the end of its transient."""
-    change = Actuators(Change(('plant.friction.stiction', 'plant.friction.coulomb'), 3.0))
+    change = CheckedActuators(Change(('plant.friction.stiction', 'plant.friction.coulomb'), 3.0))
     shipped, changed = (
         {entry.name: entry for entry in behaviour.behaviour(each).entries}
         for each in (SHIPPED, change))

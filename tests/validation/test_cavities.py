@@ -1,6 +1,6 @@
 """Cavities of the plant: each law below the atmosphere is noticed by the entry about it."""
 
-from isa_ros.validation.actuators import Actuators, Change, SHIPPED
+from isa_ros.validation.actuators import Change, CheckedActuators, SHIPPED
 from isa_ros.validation.behaviour import MODELS, SHUT
 from isa_ros.validation.cavities import cavities, moved, SEALED
 from isa_ros.validation.sensitivity import PERTURBATIONS
@@ -14,14 +14,16 @@ import pytest
     ('sensor damping x3', set())])
 def test_a_wrong_law_is_noticed_by_its_entry(name: str, noticing: set[str]) -> None:
     change, = (each.change for each in PERTURBATIONS if each.name == name)
-    missed = {entry.name for entry in cavities(Actuators(change)).entries if not entry.is_reached}
+    missed = {entry.name for entry in cavities(CheckedActuators(change)).entries
+              if not entry.is_reached}
     assert missed == {f'{model}_{entry}' for model in MODELS for entry in noticing}
 
 
 def test_as_shipped_all_are_reached_and_the_bars_stay() -> None:
     shipped = cavities().entries
     assert all(entry.is_reached for entry in shipped)
-    stiffer = cavities(Actuators(Change(('plant.oil.effective_bulk_modulus',), 1.3))).entries
+    stiffer = cavities(CheckedActuators(
+        Change(('plant.oil.effective_bulk_modulus',), 1.3))).entries
     assert [each.tolerance for each in stiffer] == [each.tolerance for each in shipped]
 
 

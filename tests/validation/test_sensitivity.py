@@ -6,7 +6,7 @@ import re
 
 from isa_ros.cli.main import main
 from isa_ros.text.json_file import write_tree
-from isa_ros.validation.actuators import Actuators, Change, SHIPPED
+from isa_ros.validation.actuators import Change, CheckedActuators, SHIPPED
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.sensitivity import (
     is_noticed, Perturbation, PERTURBATIONS, sensitivity)
@@ -81,7 +81,7 @@ def test_a_change_reaches_actuator_load_and_supply():
         ('supply.pressure_mpa',): lambda run: run.supplies[0].sheet.pressure_mpa}
     for keys, value in changes.items():
         shipped, changed = (value(each.run('rig_rotary', 'weight').configuration)
-                            for each in (SHIPPED, Actuators(Change(keys, 0.5))))
+                            for each in (SHIPPED, CheckedActuators(Change(keys, 0.5))))
         assert changed == 0.5 * shipped
 
 
