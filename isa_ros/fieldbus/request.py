@@ -22,7 +22,7 @@ OF_THE_WIRE = 0
 WATCHDOG_MS = 100.0
 
 
-class Argument(NamedTuple):
+class BusArgument(NamedTuple):
     """An argument of a bus: of the command line, and of its functions under this name."""
 
     name: str
@@ -47,7 +47,7 @@ class Bus(NamedTuple):
     module: str
     """Below `isa_ros.fieldbus`; a run imports that of its own bus only."""
     serves: str
-    arguments: tuple[Argument, ...]
+    arguments: tuple[BusArgument, ...]
     medium: str = ''
     """What it shares with buses at the same place, of which one is served; '': nothing."""
     port_faults: tuple[str, ...] = ()
@@ -55,29 +55,32 @@ class Bus(NamedTuple):
 
 
 _CAN = (
-    Argument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...', 'NAME'),
-    Argument('channel', 'of that interface'),
-    Argument('bitrate', 'of the bus (default: 1000000)', 'BIT/S', int, OF_THE_WIRE),
-    Argument('first_node', 'number of the first actuator (default: %(default)s)', 'N', int, 1),
-    Argument('allow_network', 'with udp_multicast: also where other hosts can send frames',
-             kind=bool, default=False))
+    BusArgument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...',
+                'NAME'),
+    BusArgument('channel', 'of that interface'),
+    BusArgument('bitrate', 'of the bus (default: 1000000)', 'BIT/S', int, OF_THE_WIRE),
+    BusArgument('first_node', 'number of the first actuator (default: %(default)s)', 'N', int, 1),
+    BusArgument('allow_network', 'with udp_multicast: also where other hosts can send frames',
+                kind=bool, default=False))
 
 ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
 BUSES: Mapping[str, Bus] = {
     ETHERCAT: Bus('ethercat.line', 'an EtherCAT master on a network interface', (
-        Argument('interface', 'network interface of the ring, for example one end of a veth pair',
-                 'IF'),
-        Argument('order', 'actuators in the order of the cables, from the master on (default: '
-                 'that of the run file)', 'NAME,NAME', default='')), 'ethernet',
-        (PULLED, POWERLESS)),
+        BusArgument(
+            'interface', 'network interface of the ring, for example one end of a veth pair',
+            'IF'),
+        BusArgument('order', 'actuators in the order of the cables, from the master on (default: '
+                    'that of the run file)', 'NAME,NAME', default='')),
+        'ethernet', (PULLED, POWERLESS)),
     CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', (
-        *_CAN, Argument('unconfigured', 'the nodes have no numbers: a master gives them by LSS',
-                        kind=bool, default=False)), 'can', (PULLED, POWERLESS, BUS_OFF)),
+        *_CAN,
+        BusArgument('unconfigured', 'the nodes have no numbers: a master gives them by LSS',
+                    kind=bool, default=False)), 'can', (PULLED, POWERLESS, BUS_OFF)),
     MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN, 'can'),
     SERIAL: Bus('serial.line', 'a master on a serial line', (
-        Argument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),
-        Argument('baud', 'of the line (default: that of docs/link.md)', 'BIT/S', int,
-                 OF_THE_WIRE)))}
+        BusArgument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),
+        BusArgument('baud', 'of the line (default: that of docs/link.md)', 'BIT/S', int,
+                    OF_THE_WIRE)))}
 """Every bus by its name."""
 
 

@@ -17,7 +17,7 @@ AT_REST = 'at rest, quick_stop: ramp_and_hold'
 RELEASED = 'no emergency stop, the supply is back'
 
 
-class Transition(NamedTuple):
+class DeviceTransition(NamedTuple):
     """One row of the table of states."""
 
     state: int
@@ -30,37 +30,44 @@ class Transition(NamedTuple):
 
 
 TRANSITIONS = (
-    Transition(INITIALISING, READY, AUTO_ENABLE, ENABLED,
-               'holds the measured position and force, or takes the setpoint of that tick'),
-    Transition(INITIALISING, READY, f'not {AUTO_ENABLE}', DISABLED, 'valve stays at null'),
-    Transition(INITIALISING, TRIP, ALWAYS, FAULT, 'valve stays at null'),
-    Transition(INITIALISING, ENABLE, RELEASED, INITIALISING, 'will be enabled when it is ready'),
-    Transition(INITIALISING, DISABLE, ALWAYS, INITIALISING, 'will be disabled when it is ready'),
-    Transition(INITIALISING, STOP, ALWAYS, INITIALISING, 'will be disabled when it is ready'),
-    Transition(INITIALISING, EMERGENCY_STOP, ALWAYS, INITIALISING,
-               'will be disabled when it is ready'),
-    Transition(INITIALISING, MODE, POSSIBLE, INITIALISING, 'mode of the next enable'),
-    Transition(DISABLED, ENABLE, RELEASED, ENABLED,
-               'holds the last measured position and force, or takes the setpoint of the same '
-               'command'),
-    Transition(DISABLED, TRIP, ALWAYS, FAULT, 'valve stays at null'),
-    Transition(DISABLED, MODE, POSSIBLE, DISABLED, 'mode of the next enable'),
-    Transition(ENABLED, DISABLE, ALWAYS, DISABLED, 'valve to null, integrals zero'),
-    Transition(ENABLED, STOP, ALWAYS, QUICK_STOP, 'the movement stops, the load is borne'),
-    Transition(ENABLED, EMERGENCY_STOP, ALWAYS, QUICK_STOP,
-               'as quick stop, and ends disabled also with ramp_and_hold'),
-    Transition(ENABLED, TRIP, ALWAYS, FAULT_REACTION, 'the reaction of the condition begins'),
-    Transition(ENABLED, MODE, POSSIBLE, ENABLED, 'the blocks of the mode take over, bumpless'),
-    Transition(QUICK_STOP, STOP_ENDS, ALWAYS, DISABLED, 'valve to null, integrals zero'),
-    Transition(QUICK_STOP, ENABLE, AT_REST, ENABLED, 'as from disabled'),
-    Transition(QUICK_STOP, DISABLE, ALWAYS, DISABLED, 'valve to null at once'),
-    Transition(QUICK_STOP, TRIP, ALWAYS, FAULT_REACTION, 'the reaction of the condition begins'),
-    Transition(QUICK_STOP, MODE, POSSIBLE, QUICK_STOP, 'mode of the next enable'),
-    Transition(FAULT_REACTION, REACTION_ENDS, ALWAYS, FAULT, 'valve to null, integrals zero'),
-    Transition(FAULT_REACTION, DISABLE, ALWAYS, FAULT, 'valve to null at once'),
-    Transition(FAULT_REACTION, MODE, POSSIBLE, FAULT_REACTION, 'mode of the next enable'),
-    Transition(FAULT, CLEAR, CAUSE_GONE, DISABLED, 'the fault is forgotten'),
-    Transition(FAULT, MODE, POSSIBLE, FAULT, 'mode of the next enable'),
+    DeviceTransition(INITIALISING, READY, AUTO_ENABLE, ENABLED,
+                     'holds the measured position and force, or takes the setpoint of that tick'),
+    DeviceTransition(INITIALISING, READY, f'not {AUTO_ENABLE}', DISABLED, 'valve stays at null'),
+    DeviceTransition(INITIALISING, TRIP, ALWAYS, FAULT, 'valve stays at null'),
+    DeviceTransition(INITIALISING, ENABLE, RELEASED, INITIALISING,
+                     'will be enabled when it is ready'),
+    DeviceTransition(INITIALISING, DISABLE, ALWAYS, INITIALISING,
+                     'will be disabled when it is ready'),
+    DeviceTransition(INITIALISING, STOP, ALWAYS, INITIALISING,
+                     'will be disabled when it is ready'),
+    DeviceTransition(INITIALISING, EMERGENCY_STOP, ALWAYS, INITIALISING,
+                     'will be disabled when it is ready'),
+    DeviceTransition(INITIALISING, MODE, POSSIBLE, INITIALISING, 'mode of the next enable'),
+    DeviceTransition(DISABLED, ENABLE, RELEASED, ENABLED,
+                     'holds the last measured position and force, or takes the setpoint of the '
+                     'same command'),
+    DeviceTransition(DISABLED, TRIP, ALWAYS, FAULT, 'valve stays at null'),
+    DeviceTransition(DISABLED, MODE, POSSIBLE, DISABLED, 'mode of the next enable'),
+    DeviceTransition(ENABLED, DISABLE, ALWAYS, DISABLED, 'valve to null, integrals zero'),
+    DeviceTransition(ENABLED, STOP, ALWAYS, QUICK_STOP, 'the movement stops, the load is borne'),
+    DeviceTransition(ENABLED, EMERGENCY_STOP, ALWAYS, QUICK_STOP,
+                     'as quick stop, and ends disabled also with ramp_and_hold'),
+    DeviceTransition(ENABLED, TRIP, ALWAYS, FAULT_REACTION,
+                     'the reaction of the condition begins'),
+    DeviceTransition(ENABLED, MODE, POSSIBLE, ENABLED,
+                     'the blocks of the mode take over, bumpless'),
+    DeviceTransition(QUICK_STOP, STOP_ENDS, ALWAYS, DISABLED, 'valve to null, integrals zero'),
+    DeviceTransition(QUICK_STOP, ENABLE, AT_REST, ENABLED, 'as from disabled'),
+    DeviceTransition(QUICK_STOP, DISABLE, ALWAYS, DISABLED, 'valve to null at once'),
+    DeviceTransition(QUICK_STOP, TRIP, ALWAYS, FAULT_REACTION,
+                     'the reaction of the condition begins'),
+    DeviceTransition(QUICK_STOP, MODE, POSSIBLE, QUICK_STOP, 'mode of the next enable'),
+    DeviceTransition(FAULT_REACTION, REACTION_ENDS, ALWAYS, FAULT,
+                     'valve to null, integrals zero'),
+    DeviceTransition(FAULT_REACTION, DISABLE, ALWAYS, FAULT, 'valve to null at once'),
+    DeviceTransition(FAULT_REACTION, MODE, POSSIBLE, FAULT_REACTION, 'mode of the next enable'),
+    DeviceTransition(FAULT, CLEAR, CAUSE_GONE, DISABLED, 'the fault is forgotten'),
+    DeviceTransition(FAULT, MODE, POSSIBLE, FAULT, 'mode of the next enable'),
 )
 """Every transition; an event without a row for a state is ignored there."""
 

@@ -9,7 +9,7 @@ from isa_ros.view.nodes import SceneNode, tree_of as nodes_tree
 from isa_ros.view.panels import channels_of, Group, tree_of as groups_tree
 
 
-class Page(NamedTuple):
+class ViewPage(NamedTuple):
     """What is shown of a run."""
 
     title: str

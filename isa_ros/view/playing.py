@@ -10,7 +10,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.view.frames import frame_of, MOST, PERIOD_S, Samples
 from isa_ros.view.hub import Hub
 from isa_ros.view.orders import Order, OrderAnswer, PAUSE, SEEK, SPEED, STEP, ticks_text
-from isa_ros.view.pages import Page
+from isa_ros.view.pages import ViewPage
 from isa_ros.view.panels import groups_of, recorded
 from isa_ros.view.scene import scene_of
 import numpy as np
@@ -69,7 +69,7 @@ class Player:
         signals = read_signals(opened, needs_values=False)
         run = signals.run
         nodes = scene_of(run, folder)
-        page = Page(bag.resolve().name, recorded(groups_of(run), _there(signals)), nodes)
+        page = ViewPage(bag.resolve().name, recorded(groups_of(run), _there(signals)), nodes)
         self._tracks = Tracks(signals, page.channels)
         self._step = run.step_ns / NS_PER_SECOND
         first, last = np.rint(signals.time[[0, -1]] / self._step).astype(int).tolist()

@@ -32,7 +32,7 @@ from isa_ros.view.frames import frame_of, Gathering, PERIOD_S
 from isa_ros.view.hub import Hub
 from isa_ros.view.orders import (
     Order, OrderAnswer, PAUSE, RESTART, SEEK, SETPOINT, SLOWEST, SPEED, STEP, STOP, ticks_text)
-from isa_ros.view.pages import Page
+from isa_ros.view.pages import ViewPage
 from isa_ros.view.panels import groups_of
 from isa_ros.view.scene import scene_of
 from isa_ros.view.server import serving
@@ -52,7 +52,7 @@ class LiveRun(RowSink):
             folder: Path, now: Callable[[], float] = time.perf_counter) -> None:
         run = session.run
         n_ticks = session.scenario.n_ticks
-        page = Page(session.out.name, groups_of(run), scene_of(run, folder))
+        page = ViewPage(session.out.name, groups_of(run), scene_of(run, folder))
         self._session, self._channels = session, page.channels
         self._controls = Controls(run, group, surroundings)
         self._gathering = Gathering(len(self._channels))

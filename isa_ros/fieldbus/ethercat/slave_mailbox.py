@@ -38,7 +38,7 @@ class MailError(Exception):
         self.detail = detail
 
 
-class Answering(Protocol):
+class MailProtocol(Protocol):
     """The protocol of mails of type `COE`."""
 
     def answers(self, request: bytes) -> Iterable[bytes]:
@@ -54,7 +54,7 @@ class Answering(Protocol):
 class SlaveMailbox:
     """Two sync managers in mailbox mode, and the mails that wait between them."""
 
-    def __init__(self, out: SyncManager, into: SyncManager, protocol: Answering) -> None:
+    def __init__(self, out: SyncManager, into: SyncManager, protocol: MailProtocol) -> None:
         self._out, self._into, self._protocol = out, into, protocol
         self.stop()
 
