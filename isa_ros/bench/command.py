@@ -6,7 +6,7 @@ from pathlib import Path
 import sys
 
 from isa_ros.bench import page
-from isa_ros.bench.groups import BenchGroup, groups, Wanted
+from isa_ros.bench.groups import BenchGroup, groups, OnRequest
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section
 from isa_ros.bench.parts import misfits
@@ -19,7 +19,7 @@ from isa_ros.text.progress import counted, Progress
 
 
 def chosen(
-        only: Sequence[str] | None, wanted: Wanted = Wanted()) -> tuple[BenchGroup, ...]:
+        only: Sequence[str] | None, wanted: OnRequest = OnRequest()) -> tuple[BenchGroup, ...]:
     """
     Return the groups named in ``only``, in their own order; for None all that can be measured.
 
@@ -43,7 +43,7 @@ def chosen(
 
 def bench(
         json_file: Path | None = None, only: Sequence[str] | None = None,
-        out: Path | None = None, wanted: Wanted = Wanted()) -> Report:
+        out: Path | None = None, wanted: OnRequest = OnRequest()) -> Report:
     """
     Measure, print each row when it is ready, and write JSON or the page if requested.
 

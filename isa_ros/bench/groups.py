@@ -61,7 +61,7 @@ GROUPS = (
 )
 
 
-class Wanted(NamedTuple):
+class OnRequest(NamedTuple):
     """Groups that are measured on request only."""
 
     against: str | None = None
@@ -76,12 +76,12 @@ class Wanted(NamedTuple):
         return against + (' --first-run' if self.first_run else '')
 
 
-def groups(wanted: Wanted = Wanted()) -> tuple[BenchGroup, ...]:
+def groups(wanted: OnRequest = OnRequest()) -> tuple[BenchGroup, ...]:
     """Return all groups, those of this package first."""
     return GROUPS + _on_request(wanted) + _of_benchmarks()
 
 
-def _on_request(wanted: Wanted) -> tuple[BenchGroup, ...]:
+def _on_request(wanted: OnRequest) -> tuple[BenchGroup, ...]:
     return (
         BenchGroup('against', f'This checkout against {wanted.against}, in turn',
                    alone(lambda: against.against_rows(wanted.against or '')),

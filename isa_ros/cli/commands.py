@@ -257,7 +257,7 @@ def _show(page: Any, found: Any, options: Namespace) -> None:
 def bench(options: Namespace) -> bool:
     """Measure the speed of simulations on this machine."""
     from isa_ros.bench.command import bench as run_bench
-    from isa_ros.bench.groups import Wanted
+    from isa_ros.bench.groups import OnRequest
     run_bench(options.json, options.only, options.out,
-              Wanted(options.against, options.first_run))
+              OnRequest(options.against, options.first_run))
     return True

@@ -4,7 +4,7 @@ import sys
 
 from isa_ros.bench import against, command, groups, rounds
 from isa_ros.bench.command import chosen
-from isa_ros.bench.groups import alone, BenchGroup, GROUPS, Wanted
+from isa_ros.bench.groups import alone, BenchGroup, GROUPS, OnRequest
 from isa_ros.bench.parts import divided
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
@@ -96,12 +96,12 @@ def test_a_terminal_shows_the_next_run_and_nothing_is_left_at_the_end(monkeypatc
 
 
 def test_groups_on_request_are_measured_with_their_options_only(monkeypatch):
-    assert [group.name for group in chosen(None, Wanted('HEAD', True))[len(GROUPS):]][:2] == [
+    assert [group.name for group in chosen(None, OnRequest('HEAD', True))[len(GROUPS):]][:2] == [
         'against', 'first_run']
     assert 'against' not in {group.name for group in chosen(None)}
     asked = []
     monkeypatch.setattr(against, 'against_rows', lambda revision: asked.append(revision) or [])
-    group, = chosen(['against'], Wanted('v1'))
+    group, = chosen(['against'], OnRequest('v1'))
     assert group.rows({}) == [] and asked == ['v1'] and 'v1' in group.title
 
 

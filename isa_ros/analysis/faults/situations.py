@@ -58,7 +58,7 @@ the device, they are those of a load that nothing holds. Written by
 
 
 @dataclass(frozen=True)
-class Seen:
+class NoticedFault:
     """What is noticed of one fault in one situation."""
 
     fault: str
@@ -76,7 +76,7 @@ class Seen:
 
 
 def situations(
-        names: Sequence[str] | None = None, report: Progress | None = None) -> list[Seen]:
+        names: Sequence[str] | None = None, report: Progress | None = None) -> list[NoticedFault]:
     """
     Return what is noticed of each fault of any actuator, or of those named, by situation.
 
@@ -117,14 +117,15 @@ def _chosen(names: Sequence[str] | None) -> list[NamedFault]:
     return found
 
 
-def _seen(fault: NamedFault, situation: str, rig: FaultRig, sound: Signals) -> Seen:
+def _seen(fault: NamedFault, situation: str, rig: FaultRig, sound: Signals) -> NoticedFault:
     try:
         faulty = recorded(rig, (rig.tree(fault, BEGIN_S),), DURATION_S)
     except SimulationDiverged as error:
-        return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
+        return NoticedFault(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
     condition, kind, after_s = first_alarm(faulty, sound)
     position_error, force_error = (largest_error(faulty, sound, own) for own in EXACT)
-    return Seen(fault.name, situation, condition, kind, after_s, position_error, force_error)
+    return NoticedFault(
+        fault.name, situation, condition, kind, after_s, position_error, force_error)
 
 
 def first_alarm(faulty: Signals, sound: Signals) -> tuple[str, str, float]:
@@ -146,7 +147,7 @@ def first_alarm(faulty: Signals, sound: Signals) -> tuple[str, str, float]:
     return name, kind, after_s
 
 
-def _cell(own: Seen) -> str:
+def _cell(own: NoticedFault) -> str:
     if own.diverged:
         return own.diverged
     noticed = (f'{own.kind} {own.condition}, {own.after_s / MILLI:.0f} ms' if own.condition
@@ -154,24 +155,24 @@ def _cell(own: Seen) -> str:
     return f'{noticed}; {in_mm(own.position_error)} mm, {in_newtons(own.force_error)} N'
 
 
-def _rows(found: Sequence[Seen]) -> list[tuple[str, ...]]:
+def _rows(found: Sequence[NoticedFault]) -> list[tuple[str, ...]]:
     faults = dict.fromkeys(own.fault for own in found)
     cells = {(own.fault, own.situation): _cell(own) for own in found}
     return [('fault', *SITUATIONS), *(
         (fault, *(cells[fault, name] for name in SITUATIONS)) for fault in faults)]
 
 
-def as_text(found: Sequence[Seen]) -> str:
+def as_text(found: Sequence[NoticedFault]) -> str:
     """Return the matrix for a terminal."""
     return '\n'.join(aligned(_rows(found)))
 
 
-def as_tree(found: Sequence[Seen]) -> dict[str, Any]:
+def as_tree(found: Sequence[NoticedFault]) -> dict[str, Any]:
     """Return the matrix for JSON."""
     return {'situations': [vars(own) for own in found]}
 
 
-def write_page(found: Sequence[Seen], directory: Path) -> list[Path]:
+def write_page(found: Sequence[NoticedFault], directory: Path) -> list[Path]:
     """Write the page; return its path."""
     page = Page(PAGE, _HEAD)
     page.section('Matrix')

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from isa_ros.analysis.measured.fit import Floats
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.playback import played
-from isa_ros.analysis.measured.search import Box, searched
+from isa_ros.analysis.measured.search import ScaledBox, searched
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.suggest import alternatives
@@ -166,8 +166,8 @@ def closed(
         start = found if start is None else start
         return found
 
-    box = Box(np.array([own.low for own in free]) / size,
-              np.array([own.high for own in free]) / size)
+    box = ScaledBox(np.array([own.low for own in free]) / size,
+                    np.array([own.high for own in free]) / size)
     lags = max(1, round(CORRELATION / float(np.median(np.diff(grid)))))
     found = searched(residuals, np.array([own.start for own in free]) / size, box, lags)
     return [Closed(own, float(x * own.size), float(width * own.size))

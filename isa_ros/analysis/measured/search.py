@@ -39,7 +39,7 @@ _SMALL_SHARE = 0.2      # of half an interval: the same
 _MOST_STEPS = 15        # of the first search
 
 
-class Box(NamedTuple):
+class ScaledBox(NamedTuple):
     """Bounds of the parameters over their sizes, each (n_parameters,)."""
 
     low: Floats
@@ -61,7 +61,7 @@ class Minimum(NamedTuple):
     cost: float
 
 
-def searched(residuals: Residuals, start: Floats, box: Box, lags: int) -> Minimum:
+def searched(residuals: Residuals, start: Floats, box: ScaledBox, lags: int) -> Minimum:
     """
     Return the best minimum of several starts; its intervals reach to the others as good as it.
 
@@ -91,7 +91,7 @@ def _remembered(residuals: Residuals) -> Residuals:
     return of
 
 
-def _displaced(theta: Floats, box: Box) -> list[Floats]:
+def _displaced(theta: Floats, box: ScaledBox) -> list[Floats]:
     """Return two starts on either side of theta in every parameter."""
     found = []
     for side in (0, 1):
@@ -114,7 +114,7 @@ def cost_of(found: Floats) -> float:
     return 2.0 * float(np.sum(np.log(left_of(found))))
 
 
-def _descended(residuals: Residuals, start: Floats, box: Box) -> Floats:
+def _descended(residuals: Residuals, start: Floats, box: ScaledBox) -> Floats:
     """Return theta near the minimum of the squares, weighted by what is left at the start."""
     left = left_of(residuals(start))
     found = least_squares(
@@ -126,13 +126,13 @@ def _descended(residuals: Residuals, start: Floats, box: Box) -> Floats:
 
 
 def _slopes(
-        residuals: Residuals, theta: Floats, box: Box, share: float, left: Floats) -> Floats:
+        residuals: Residuals, theta: Floats, box: ScaledBox, share: float, left: Floats) -> Floats:
     """Return the derivatives (n_residuals, n_parameters) of weighted residuals, by differences."""
     return np.stack([(_slope(residuals, theta, box, share, k) / left).ravel()
                      for k in range(len(theta))], axis=1)
 
 
-def _slope(residuals: Residuals, theta: Floats, box: Box, share: float, k: int) -> Floats:
+def _slope(residuals: Residuals, theta: Floats, box: ScaledBox, share: float, k: int) -> Floats:
     """
     Return the derivative by one parameter, (n_signals, n); 0 where no side of theta is allowed.
 
@@ -149,7 +149,7 @@ def _slope(residuals: Residuals, theta: Floats, box: Box, share: float, k: int) 
     return np.zeros_like(residuals(theta))
 
 
-def _bend(residuals: Residuals, theta: Floats, box: Box, k: int) -> Floats:
+def _bend(residuals: Residuals, theta: Floats, box: ScaledBox, k: int) -> Floats:
     """Return what a slope leaves over on both sides of theta, (n_signals, n); 0 beside a bound."""
     below, above = box.moved(theta, k, -NARROW), box.moved(theta, k, NARROW)
     here = residuals(theta)
@@ -158,7 +158,7 @@ def _bend(residuals: Residuals, theta: Floats, box: Box, k: int) -> Floats:
     return bend if is_inside else np.zeros_like(here)
 
 
-def _refined(residuals: Residuals, theta: Floats, box: Box, lags: int) -> Minimum:
+def _refined(residuals: Residuals, theta: Floats, box: ScaledBox, lags: int) -> Minimum:
     """Return the minimum near theta by steps with instruments, as long as they lower the cost."""
     here = residuals(theta)
     if not np.isfinite(here).all():

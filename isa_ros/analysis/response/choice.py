@@ -42,7 +42,7 @@ class Choice:
         return self.load is None and self.loop == 'position'
 
 
-class Chosen(NamedTuple):
+class ChosenRun(NamedTuple):
     """A run with the chosen values, and which of its actuators is measured."""
 
     tree: Tree
@@ -54,7 +54,7 @@ class Chosen(NamedTuple):
     """Other values of the load that the actuator is measured on, without their prefix."""
 
 
-def chosen(choice: Choice) -> Chosen:
+def chosen(choice: Choice) -> ChosenRun:
     """
     Return the run that a user names.
 
@@ -80,7 +80,7 @@ def chosen(choice: Choice) -> Chosen:
         else:
             values[full_key(key, name)] = value
     tree = changed(tree, values, place.file)
-    return Chosen(tree, place, run_with_robots(tree, place)[0], name, load_values)
+    return ChosenRun(tree, place, run_with_robots(tree, place)[0], name, load_values)
 
 
 def _of_model(choice: Choice) -> Tree:

@@ -8,7 +8,7 @@ from typing import Any
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.body_load import body_load
-from isa_ros.analysis.response.choice import Choice, Chosen, chosen
+from isa_ros.analysis.response.choice import Choice, chosen, ChosenRun
 from isa_ros.analysis.response.loops import (
     Loop, loop_name, loop_of, units_of, UserUnit)
 from isa_ros.config.models.catalogue import actuator_model
@@ -158,7 +158,7 @@ def rig(choice: Choice) -> Rig:
     return rig_of(chosen(choice), choice)
 
 
-def rig_of(named: Chosen, choice: Choice) -> Rig:
+def rig_of(named: ChosenRun, choice: Choice) -> Rig:
     """Return the rig of a run with the chosen values; as `rig`."""
     config = named.run.actuator(named.actuator)
     units = units_of(config.sheet)
@@ -180,7 +180,7 @@ def rig_of(named: Chosen, choice: Choice) -> Rig:
         named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values, source)
 
 
-def _of_body(named: Chosen, default: Tree) -> tuple[Tree, str]:
+def _of_body(named: ChosenRun, default: Tree) -> tuple[Tree, str]:
     """Return the load of an actuator that moves a body, and where it comes from."""
     body = named.run.body_of(named.actuator)
     where = 'its body' if body is None else body.name

@@ -83,7 +83,7 @@ UNITS = (PowerUnit(3.5, 5000.0, 0.16), PowerUnit(3.5, 5000.0, 0.75), PowerUnit(4
 
 
 @dataclass(frozen=True)
-class Supplied:
+class SuppliedTrot:
     """The trot on one unit; SI, means and peaks as the page has them."""
 
     unit: PowerUnit
@@ -107,9 +107,9 @@ class Supplied:
 
 def results(
         progress: Progress | None = None, units: Sequence[PowerUnit] = UNITS,
-        duration: float = DURATION) -> list[Supplied]:
+        duration: float = DURATION) -> list[SuppliedTrot]:
     """Let it trot on each unit."""
-    found: list[Supplied] = []
+    found: list[SuppliedTrot] = []
     for unit in units:
         found.append(supplied(unit, trot(unit, duration)))
         if progress is not None:
@@ -125,7 +125,7 @@ def trot(unit: PowerUnit, duration: float) -> Result:
         return run.simulate(duration)
 
 
-def supplied(unit: PowerUnit, result: Result) -> Supplied:
+def supplied(unit: PowerUnit, result: Result) -> SuppliedTrot:
     """Return the numbers of a run."""
     time, rail = result.time, result[f'{UNIT}/rail.pressure']
     late = STEADY if time[-1] > STEADY else 0.0
@@ -140,7 +140,7 @@ def supplied(unit: PowerUnit, result: Result) -> Supplied:
     steady = time[1:] > late
     power = float(pump[steady].mean())
     low = result[f'{ROBOT}.position'][:, 2] < FALLEN
-    return Supplied(
+    return SuppliedTrot(
         unit, float(stood - before.min()), float(stood - after.min()) if len(after) else np.nan,
         min(float(result[f'{UNIT}/{place}.pressure'].min()) for place in MANIFOLDS),
         float(drawn[steady].mean()), float(drawn.max()), power,
@@ -163,12 +163,12 @@ def gap_of(account: Mapping[str, float]) -> float:
     return abs(lacks) / given
 
 
-def as_text(found: Sequence[Supplied]) -> str:
+def as_text(found: Sequence[SuppliedTrot]) -> str:
     """Return the text for a terminal."""
     return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
 
 
-def as_tree(found: Sequence[Supplied]) -> dict[str, Any]:
+def as_tree(found: Sequence[SuppliedTrot]) -> dict[str, Any]:
     """Return the study for JSON, SI, without its traces; null where there is no number."""
     outcomes = []
     for one in found:
@@ -178,7 +178,7 @@ def as_tree(found: Sequence[Supplied]) -> dict[str, Any]:
     return {'name': NAME, 'title': TITLE, 'outcomes': outcomes}
 
 
-def write_page(found: Sequence[Supplied], directory: Path) -> list[Path]:
+def write_page(found: Sequence[SuppliedTrot], directory: Path) -> list[Path]:
     """Write power_unit.md and its figure into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
     page.table(_table(found, '**'), RIGHT)
@@ -196,7 +196,7 @@ def write_page(found: Sequence[Supplied], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _seen(by_unit: Mapping[PowerUnit, Supplied]) -> str:
+def _seen(by_unit: Mapping[PowerUnit, SuppliedTrot]) -> str:
     """Return what follows from the run; nothing of a part of it."""
     if not set(UNITS) <= set(by_unit):
         return ''
@@ -224,13 +224,13 @@ def _seen(by_unit: Mapping[PowerUnit, Supplied]) -> str:
         f'needs {1e-3 * own.peak_power:.1f} kW at its peak.'))
 
 
-def _table(found: Sequence[Supplied], mark: str = '') -> list[tuple[str, ...]]:
+def _table(found: Sequence[SuppliedTrot], mark: str = '') -> list[tuple[str, ...]]:
     return [('pump', 'limit, kW', 'accumulator, l', 'sag, MPa', 'pushed', 'lowest, MPa',
              'flow, l/min', 'peak', 'pump, W', 'peak', 'lost, W', 'valves, W', 'stays up'),
             *(_row(one, mark) for one in found)]
 
 
-def _row(one: Supplied, mark: str) -> tuple[str, ...]:
+def _row(one: SuppliedTrot, mark: str) -> tuple[str, ...]:
     unit = one.unit
     pump = f'{unit.displacement:g} ml, {unit.flow:g} l/min'
     return (f'{mark}{pump}{mark}' if unit == CHOSEN else pump,
@@ -242,7 +242,7 @@ def _row(one: Supplied, mark: str) -> tuple[str, ...]:
             'yes' if np.isnan(one.fell) else f'falls at {one.fell:.1f} s')
 
 
-def _drawn(found: Sequence[Supplied]) -> Figure:
+def _drawn(found: Sequence[SuppliedTrot]) -> Figure:
     figure = Figure(figsize=(8.6, 6.0), dpi=85, layout='constrained')
     pressure, flow = figure.subplots(2, 1, sharex=True)
     for one in found:

@@ -54,7 +54,7 @@ def _transform(outputs: np.ndarray, cycles: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Parts:
+class ResponseParts:
     """
     The parts of C_r or C_y: C = d + K_f d_f + w (K_p (p + K_f p_f) + K_i (i + K_f i_f)).
 
@@ -77,7 +77,7 @@ class Parts:
         return found
 
 
-def parts(sheet: Pid, frequency: np.ndarray) -> tuple[Parts, Parts]:
+def parts(sheet: Pid, frequency: np.ndarray) -> tuple[ResponseParts, ResponseParts]:
     """Return the parts of C_r and of C_y."""
     def both(kp: float, ki: float, kf: float) -> np.ndarray:
         return np.array(responses(replace(sheet, kp=kp, ki=ki, kf=kf), frequency))
@@ -86,5 +86,5 @@ def parts(sheet: Pid, frequency: np.ndarray) -> tuple[Parts, Parts]:
     p_f, i_f = ((both(*gains, _KF) - damped - without) / _KF
                 for gains, without in (((1.0, 0.0), p), ((0.0, 1.0), i)))
     of_reference, of_measured = (
-        Parts(*rows) for rows in zip(d, (damped - d) / _KF, p, p_f, i, i_f))
+        ResponseParts(*rows) for rows in zip(d, (damped - d) / _KF, p, p_f, i, i_f))
     return of_reference, of_measured

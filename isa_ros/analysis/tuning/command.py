@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping
 import sys
 from typing import Any
 
-from isa_ros.analysis.response.choice import Choice, Chosen, chosen
+from isa_ros.analysis.response.choice import Choice, chosen, ChosenRun
 from isa_ros.analysis.response.loops import units_of
 from isa_ros.analysis.response.rig import Rig, rig_of
-from isa_ros.analysis.tuning.design import TOLERATED_DEG, TOLERATED_SHARE, Wanted
+from isa_ros.analysis.tuning.design import TOLERATED_DEG, TOLERATED_SHARE, WantedLoop
 from isa_ros.analysis.tuning.tune import factors, Reached, STROKES, tune as tuned_block, Tuned
 from isa_ros.config.text.changes import changed, values_of
 from isa_ros.config.text.parameter_sets import as_tree
@@ -29,7 +29,7 @@ def tune(options: Namespace) -> bool:
     choice = Choice(
         name=options.name, loop=options.loop, actuator=options.actuator, preset=options.preset,
         variants=options.variant, load=options.load, values=values_of(options.set, '--set'))
-    wanted = Wanted(options.phase_margin, options.bandwidth)
+    wanted = WantedLoop(options.phase_margin, options.bandwidth)
     if not MARGINS[0] <= wanted.phase_margin <= MARGINS[1]:
         raise ConfigError(
             f'--phase-margin = {wanted.phase_margin:g} deg, must be {MARGINS[0]:g} to '
@@ -55,7 +55,7 @@ def tune(options: Namespace) -> bool:
     return found.is_reached
 
 
-def _refuse_without_force(named: Chosen) -> None:
+def _refuse_without_force(named: ChosenRun) -> None:
     """Refuse an actuator whose force block is off, as under position control."""
     is_on = active(named.run.actuator(named.actuator).sheet.reu)
     if 'force' not in is_on:
@@ -74,7 +74,7 @@ def _strokes(given: list[float] | None) -> tuple[float, ...]:
     return tuple(percent * PERCENT for percent in sorted(set(given)))
 
 
-def table(bench: Rig, wanted: Wanted, found: Tuned) -> str:
+def table(bench: Rig, wanted: WantedLoop, found: Tuned) -> str:
     """Return what was wanted and what is measured at each place, and the gains."""
     units = units_of(bench.config.sheet)
     place, force = units['position'], bench.loop.unit
@@ -109,7 +109,7 @@ def _gains(found: Tuned) -> Iterator[str]:
            f'{", ".join(f"{factor:g}" for factor in factors(block))}')
 
 
-def _missed(bench: Rig, wanted: Wanted, found: Tuned, has_file: bool) -> str:
+def _missed(bench: Rig, wanted: WantedLoop, found: Tuned, has_file: bool) -> str:
     """Return one line with the numbers that were reached."""
     hunting = [reached for reached in found.reached if reached.measured.rest.hunts]
     worst = hunting[0] if hunting else max(found.reached, key=lambda reached: reached.error)
@@ -124,7 +124,7 @@ def _missed(bench: Rig, wanted: Wanted, found: Tuned, has_file: bool) -> str:
             + ('; no file is written' if has_file else ''))
 
 
-def run_file(named: Chosen, found: Tuned, text: str) -> str:
+def run_file(named: ChosenRun, found: Tuned, text: str) -> str:
     """Return the run with the gains as the text of a run file; ``text`` is its comment."""
     below = f'actuators.{named.actuator}.parameters.reu.force'
     tree = changed(named.tree, {
@@ -139,7 +139,7 @@ def _written(found: Tuned) -> Tree:
             'gain_schedule': as_tree(block.gain_schedule, Schedule)}
 
 
-def _numbers(bench: Rig, wanted: Wanted, found: Tuned) -> Mapping[str, Any]:
+def _numbers(bench: Rig, wanted: WantedLoop, found: Tuned) -> Mapping[str, Any]:
     units = units_of(bench.config.sheet)
     return {
         'actuator': bench.config.name, 'model': bench.config.model, 'load': bench.load,

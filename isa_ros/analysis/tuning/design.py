@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import math
 
 from isa_ros.analysis.signals.frequency import bandwidth, margins, Response
-from isa_ros.analysis.tuning.block_response import Parts
+from isa_ros.analysis.tuning.block_response import ResponseParts
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize
@@ -34,7 +34,7 @@ TOLERATED_DEG, TOLERATED_SHARE = 5.0, 0.1   # error of the margin; of the bandwi
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedLoop:
     """The aim: phase margin of L in degrees, -3 dB of the closed loop in Hz."""
 
     phase_margin: float
@@ -87,7 +87,7 @@ class Prediction:
 class LoopAtPlace:
     """The loop at one place of the stroke, for any gains."""
 
-    def __init__(self, plant: Plant, of_reference: Parts, of_measured: Parts,
+    def __init__(self, plant: Plant, of_reference: ResponseParts, of_measured: ResponseParts,
                  frequency: np.ndarray) -> None:
         self._plant = plant.at(frequency)
         self._of_reference, self._of_measured = of_reference, of_measured
@@ -132,7 +132,7 @@ class LoopAtPlace:
 
 
 def designed(
-        places: Sequence[LoopAtPlace], wanted: Wanted, near: Sequence[float]) -> Gains | None:
+        places: Sequence[LoopAtPlace], wanted: WantedLoop, near: Sequence[float]) -> Gains | None:
     """
     Return the gains whose margins are closest to the wanted one, of all that have the bandwidth.
 
@@ -166,7 +166,7 @@ def designed(
 
 
 def _kps(
-        places: Sequence[LoopAtPlace], wanted: Wanted, near: Sequence[float], corner: float,
+        places: Sequence[LoopAtPlace], wanted: WantedLoop, near: Sequence[float], corner: float,
         kf: float) -> list[tuple[float, float]] | None:
     """Return K_p with the wanted bandwidth, and its margin, at each place; None: not robust."""
     found = []
@@ -180,7 +180,7 @@ def _kps(
     return found
 
 
-def _shared(places: Sequence[LoopAtPlace], wanted: Wanted, gains: Gains) -> Gains:
+def _shared(places: Sequence[LoopAtPlace], wanted: WantedLoop, gains: Gains) -> Gains:
     """Return gains that share the error at each place between margin and bandwidth."""
     def error(place: LoopAtPlace, kp: float) -> float:
         predicted = place.predicted(kp, gains.corner, gains.kf)
@@ -196,7 +196,7 @@ def _shared(places: Sequence[LoopAtPlace], wanted: Wanted, gains: Gains) -> Gain
     return replace(gains, kp=np.array(best))
 
 
-def shares(wanted: Wanted, phase_margin: float, bandwidth: float) -> tuple[float, float]:
+def shares(wanted: WantedLoop, phase_margin: float, bandwidth: float) -> tuple[float, float]:
     """Return the errors of margin and bandwidth over what is tolerated."""
     return ((phase_margin - wanted.phase_margin) / TOLERATED_DEG,
             (bandwidth / wanted.bandwidth - 1.0) / TOLERATED_SHARE)

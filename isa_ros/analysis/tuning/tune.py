@@ -15,7 +15,7 @@ from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import FrequencySweep, LARGEST_SHARE
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
-    DENSE, designed, Gains, LoopAtPlace, plant_of, shares, Wanted)
+    DENSE, designed, Gains, LoopAtPlace, plant_of, shares, WantedLoop)
 from isa_ros.core.parameter import replaced
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.plant.load_holding import NoneHolding
@@ -53,7 +53,7 @@ class Reached:
     share: float            # of the stroke
     rig: Rig
     measured: Bode
-    wanted: Wanted
+    wanted: WantedLoop
 
     @property
     def error(self) -> float:
@@ -88,7 +88,7 @@ class Tuned:
 
 
 def tune(
-        rig: Rig, wanted: Wanted, strokes: Sequence[float] = STROKES,
+        rig: Rig, wanted: WantedLoop, strokes: Sequence[float] = STROKES,
         amplitude: float | None = None, progress: Progress | None = None) -> Tuned:
     """
     Return the gains of a rig's force block for a wanted margin and bandwidth at ``strokes``.
@@ -135,8 +135,8 @@ class _Bench:
     """Measures a block at all places, and designs another one from that."""
 
     def __init__(
-            self, rig: Rig, wanted: Wanted, strokes: tuple[float, ...], amplitude: float | None,
-            progress: Progress | None) -> None:
+            self, rig: Rig, wanted: WantedLoop, strokes: tuple[float, ...],
+            amplitude: float | None, progress: Progress | None) -> None:
         self._rig, self._wanted, self._strokes = rig, wanted, strokes
         self._amplitude, self._progress = amplitude, progress
         self._done, self._total = 0, (ROUNDS + 1) * len(strokes)
@@ -174,7 +174,7 @@ class _Bench:
             f'(reu.force.kp = {block.kp:.3g} at last) follow the reference without hunting'
             + held(self._rig))
 
-    def design(self, current: Tuned, wanted: Wanted) -> tuple[Gains, Wanted]:
+    def design(self, current: Tuned, wanted: WantedLoop) -> tuple[Gains, WantedLoop]:
         """Return gains and what they are for: as wanted, or the next bandwidth that exists."""
         sheet = current.block
         frequency = np.geomspace(self._sweep.low, self._sweep.high, DENSE)

@@ -1,7 +1,7 @@
 """The search over machines that are formulas, rough as simulations with friction are."""
 
 from isa_ros.analysis.measured.search import (
-    _bend, _refined, _slope, Box, cost_of, left_of, searched)
+    _bend, _refined, _slope, cost_of, left_of, ScaledBox, searched)
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 N = 1500
 TRUE = 1.8
 SWING = np.sin(np.linspace(0.0, 60.0, N))
-BOX = Box(np.array([0.1]), np.array([10.0]))
+BOX = ScaledBox(np.array([0.1]), np.array([10.0]))
 LAGS = 40
 
 
@@ -103,7 +103,7 @@ def test_intervals_hold_the_truth_in_95_of_100_machines(lasts: float) -> None:
         return np.stack([a * sweep + 0.5 * b * square + 0.2 * a * c * slow,
                          c * np.sqrt(b) * slow + 0.3 * a * square])
     starts = np.array([[1.0, 1.0, 1.0], [2.5, 0.4, 1.0], [1.2, 0.9, 2.0]])
-    box, n_held = Box(np.full(3, 0.1), np.full(3, 10.0)), np.zeros(3)
+    box, n_held = ScaledBox(np.full(3, 0.1), np.full(3, 10.0)), np.zeros(3)
     for seed in range(200):
         measured = signals(true) - np.stack([
             coloured(2 * seed, 0.05, lasts), coloured(2 * seed + 1, 0.3, lasts)])
@@ -115,7 +115,7 @@ def test_intervals_hold_the_truth_in_95_of_100_machines(lasts: float) -> None:
 def test_parameters_that_may_be_0_are_found_from_0() -> None:
     def line(theta: np.ndarray) -> np.ndarray:
         return np.stack([(theta[0] + 0.7) * SWING + (theta[1] - 2.5) * np.sqrt(np.abs(SWING))])
-    box = Box(np.array([-3.0, 0.1]), np.array([3.0, 10.0]))
+    box = ScaledBox(np.array([-3.0, 0.1]), np.array([3.0, 10.0]))
     found = searched(line, np.array([0.0, 1.0]), box, LAGS)
     assert found.theta == pytest.approx([-0.7, 2.5], abs=1e-6)
 
@@ -214,7 +214,7 @@ def test_of_two_parameters_a_minimum_may_be_worse_by_more() -> None:
         x, y = theta
         return np.stack([0.1 * (x - 1.0) * (x - 1.5) * SWING + 0.012 * (x - 1.0) * cosine
                          + 0.1 * (y - 2.0) * other + noise(3, 0.01)])
-    box = Box(np.full(2, 0.1), np.full(2, 10.0))
+    box = ScaledBox(np.full(2, 0.1), np.full(2, 10.0))
     found = searched(two, np.array([0.95, 1.7]), box, LAGS)
     assert found.half_widths[0] > 0.4 and found.theta[1] == pytest.approx(2.0, abs=0.01)
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.analysis.studies import power_unit
-from isa_ros.analysis.studies.power_unit import CHOSEN, PowerUnit, Supplied
+from isa_ros.analysis.studies.power_unit import CHOSEN, PowerUnit, SuppliedTrot
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.units import LITRE
 from isa_ros.scripting.result import Result
@@ -23,12 +23,12 @@ def result() -> Result:
 
 
 @pytest.fixture(scope='module')
-def found(result: Result) -> Supplied:
+def found(result: Result) -> SuppliedTrot:
     """Return its numbers, means over all of it."""
     return power_unit.supplied(SMALL, result)
 
 
-def test_the_columns_are_the_account_and_it_closes(found: Supplied, result: Result) -> None:
+def test_the_columns_are_the_account_and_it_closes(found: SuppliedTrot, result: Result) -> None:
     """E12; peaks are no less than means."""
     unit, gas = result.accounts['unit'], result.accounts['unit/buffer']
     actuators = [result.accounts[own.name] for own in result.scenario.run.actuators]
@@ -45,7 +45,7 @@ def test_the_columns_are_the_account_and_it_closes(found: Supplied, result: Resu
     assert found.peak_flow >= found.flow and found.peak_power >= found.power
 
 
-def test_pressures_are_those_of_rail_and_manifolds(found: Supplied, result: Result) -> None:
+def test_pressures_are_those_of_rail_and_manifolds(found: SuppliedTrot, result: Result) -> None:
     rail = result['unit/rail.pressure']
     assert found.sag == rail[-1] - rail.min() >= 0.0 and np.isnan(found.pushed_sag)
     assert found.lowest == min(
@@ -72,7 +72,7 @@ def test_a_unit_has_the_values_of_its_row_and_the_file_those_of_the_chosen(
 
 
 def test_whether_and_when_it_fell_is_in_its_row(
-        found: Supplied, result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+        found: SuppliedTrot, result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     assert power_unit.as_text([found]).endswith('yes')
     assert power_unit.as_tree([found])['outcomes'][0]['fell'] is None
     monkeypatch.setattr(power_unit, 'FALLEN', 1.0)      # above where it stands
@@ -80,7 +80,7 @@ def test_whether_and_when_it_fell_is_in_its_row(
     assert fallen.fell == 0.0 and power_unit.as_text([fallen]).endswith('falls at 0.0 s')
 
 
-def test_a_part_of_the_study_draws_no_conclusions(found: Supplied, tmp_path: Path) -> None:
+def test_a_part_of_the_study_draws_no_conclusions(found: SuppliedTrot, tmp_path: Path) -> None:
     page, figure = power_unit.write_page([found], tmp_path)
     assert figure.exists() and 'The pump must' not in page.read_text()
     assert 'gas at 12 MPa' in page.read_text()

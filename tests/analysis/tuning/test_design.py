@@ -6,7 +6,7 @@ import math
 from isa_ros.analysis.signals.frequency import bandwidth, margins, Response
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
-    DENSE, designed, Gains, LEAST_GAIN_MARGIN, LoopAtPlace, Plant, plant_of, shares, Wanted)
+    DENSE, designed, Gains, LEAST_GAIN_MARGIN, LoopAtPlace, Plant, plant_of, shares, WantedLoop)
 from isa_ros.reu.block import Pid
 import numpy as np
 import pytest
@@ -42,7 +42,8 @@ def measured(value: np.ndarray) -> Response:
 
 
 @pytest.mark.parametrize('wanted', [
-    Wanted(60.0, 40.0), Wanted(45.0, 40.0), Wanted(70.0, 25.0), Wanted(55.0, 60.0)])
+    WantedLoop(60.0, 40.0), WantedLoop(45.0, 40.0), WantedLoop(70.0, 25.0),
+    WantedLoop(55.0, 60.0)])
 def test_the_designed_loop_is_as_wanted(wanted):
     """Computed again from the responses of the block with these gains, not from its parts."""
     plants = [plant(GAIN), plant(3.0 * GAIN)]
@@ -66,14 +67,14 @@ def _with(kp: float, ki: float, kf: float) -> Pid:
 
 def test_a_plant_of_thrice_the_gain_has_a_third_of_the_gains():
     """L is the same: nothing but the product counts."""
-    gains = designed(places(plant(GAIN), plant(3.0 * GAIN)), Wanted(60.0, 40.0), [8e-8, 3e-8])
+    gains = designed(places(plant(GAIN), plant(3.0 * GAIN)), WantedLoop(60.0, 40.0), [8e-8, 3e-8])
     assert gains is not None
     assert gains.kp[0] / gains.kp[1] == pytest.approx(3.0, rel=1e-3)
 
 
 def test_a_bandwidth_far_beyond_the_valve_has_no_robust_gains():
     """A lag of 20 Hz and a delay: at 200 Hz the phase is beyond -180 deg, whatever the lead."""
-    assert designed(places(plant(GAIN, lag_hz=20.0)), Wanted(60.0, 200.0), [8e-8]) is None
+    assert designed(places(plant(GAIN, lag_hz=20.0)), WantedLoop(60.0, 200.0), [8e-8]) is None
 
 
 def test_the_plant_comes_back_from_the_closed_loop():
@@ -93,10 +94,10 @@ def test_the_plant_comes_back_from_the_closed_loop():
 
 
 def test_errors_are_shares_of_what_is_tolerated():
-    assert shares(Wanted(60.0, 40.0), 55.0, 42.0) == pytest.approx((-1.0, 0.5))
+    assert shares(WantedLoop(60.0, 40.0), 55.0, 42.0) == pytest.approx((-1.0, 0.5))
 
 
 def test_gains_hold_one_kp_for_each_place():
-    gains = designed(places(*[plant(GAIN * k) for k in (1.0, 2.0, 4.0)]), Wanted(60.0, 40.0),
+    gains = designed(places(*[plant(GAIN * k) for k in (1.0, 2.0, 4.0)]), WantedLoop(60.0, 40.0),
                      [8e-8] * 3)
     assert isinstance(gains, Gains) and gains.kp.shape == (3,)
