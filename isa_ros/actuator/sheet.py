@@ -172,7 +172,7 @@ def _refuse_beside_stated_valve(sheet: ActuatorSheet) -> None:
 
 
 _KINDS: dict[type, str] = {
-    Off: 'off', Held: 'held', dither.Held: 'held', Pid: 'pid', LeadLag: 'lead_lag',
+    Off: 'off', Held: 'held', dither.HeldWithDither: 'held', Pid: 'pid', LeadLag: 'lead_lag',
     ClosedLoopCoil: 'closed_loop', ExplicitCoil: 'explicit'}
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from isa_ros.config.paths import find_drawing
-from isa_ros.config.robots.drives import Cylinder, DriveConfig
+from isa_ros.config.robots.drives import CylinderBetweenLinks, DriveConfig
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.core.units import MILLI
 
@@ -79,7 +79,7 @@ def _mounts(robot: RobotConfig, root: Element) -> list[Element]:
 
 def _carried(drive: DriveConfig, root: Element) -> tuple[str, dict[str, str]]:
     """Return the link that carries an actuator, and its place there."""
-    if isinstance(drive.linkage, Cylinder):
+    if isinstance(drive.linkage, CylinderBetweenLinks):
         pin = ' '.join(f'{MILLI * one:.9g}' for one in drive.linkage.base_mm)
         return str(drive.base), {'xyz': pin, 'rpy': '0 0 0'}
     joint = next(own for own in root.iterfind('joint') if own.get('name') == drive.joint)

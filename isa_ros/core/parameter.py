@@ -123,6 +123,9 @@ class Parameters:
 
     """
 
+    KIND = ''
+    """In a file, where it is one of several sets; '': as the class is called."""
+
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)

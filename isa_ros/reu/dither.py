@@ -54,8 +54,10 @@ class Dithered(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Held(Dithered):
+class HeldWithDither(Dithered):
     """The block samples and holds its reference; its loop is closed in the plant's equations."""
+
+    KIND = 'held'
 
 
 @kernel

@@ -73,7 +73,7 @@ class Held(Parameters):
 
 OFF, HELD, PID, IMPEDES, LINEARISES, LEADS_AND_LAGS = range(6)
 KINDS: dict[type, int] = {
-    Off: OFF, Held: HELD, dither.Held: HELD, Pid: PID, Impedance: IMPEDES,
+    Off: OFF, Held: HELD, dither.HeldWithDither: HELD, Pid: PID, Impedance: IMPEDES,
     FeedbackLinearisation: LINEARISES, LeadLag: LEADS_AND_LAGS}
 """The kinds of blocks as numbers, for the kernels."""
 
@@ -87,7 +87,7 @@ class Reu(Parameters):
     force: Off | Pid | FeedbackLinearisation
     pressure: Off | Pid
     spool: Off | Held | Pid
-    current: dither.Held | LeadLag
+    current: dither.HeldWithDither | LeadLag
     device: Device = nested(BEFORE)
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)

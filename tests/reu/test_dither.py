@@ -6,8 +6,8 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import ParameterError
-from isa_ros.reu.dither import dither, Held
-from isa_ros.reu.wiring import Held as HeldSpool, KINDS
+from isa_ros.reu.dither import dither, HeldWithDither
+from isa_ros.reu.wiring import Held, KINDS
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, smart_actuator
@@ -15,9 +15,9 @@ from tests.sheets import actuator_sheet, smart_actuator
 RATED = 0.010   # A, of the model cylinder
 
 
-def current(**values: float) -> Held:
+def current(**values: float) -> HeldWithDither:
     """Return a current block of 10 kHz."""
-    return Held(**{'rate_hz': 1e4, 'dither_percent': 2.0, 'dither_hz': 250.0} | values)
+    return HeldWithDither(**{'rate_hz': 1e4, 'dither_percent': 2.0, 'dither_hz': 250.0} | values)
 
 
 def dithered(model: str = 'cylinder', variants: tuple[str, ...] = (),
@@ -66,7 +66,7 @@ def test_a_dither_that_the_conversions_do_not_resolve_is_refused(values, message
 
 def test_none_is_asked_of_a_block_without_dither():
     assert current(dither_percent=0.0, dither_hz=3000.0).half_period >= 1
-    assert KINDS[Held] == KINDS[HeldSpool]
+    assert KINDS[HeldWithDither] == KINDS[Held]
 
 
 @pytest.mark.parametrize('step', [6, 7, 25, 26, 46, 1006])

@@ -31,9 +31,10 @@ _RANGE_ROUNDING = 1e-6  # deg or mm by which a range may exceed that of the URDF
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cylinder(Parameters):
+class CylinderBetweenLinks(Parameters):
     """A cylinder between a point of one link and a point of another one."""
 
+    KIND = 'cylinder'
     base_mm: tuple[float, ...] = numbers(
         'pin of its cap end, axes of the link `base`', 'mm', least=3, most=3, ge=-1e5, le=1e5)
     rod_mm: tuple[float, ...] = numbers(
@@ -41,7 +42,7 @@ class Cylinder(Parameters):
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=1e5)
 
 
-Linkage = OneJointLinkage | Cylinder
+Linkage = OneJointLinkage | CylinderBetweenLinks
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -235,7 +236,7 @@ def _unit_between(tree: RobotTree, a: int, b: int) -> str:
 
 def robot_drive(own: DriveConfig, tree: RobotTree) -> RobotDrive:
     """Return a drive of the sheet of a robot, SI."""
-    if not isinstance(own.linkage, Cylinder):
+    if not isinstance(own.linkage, CylinderBetweenLinks):
         names = [link.joint.name for link in tree.links]
         assert own.joint is not None
         return RobotDrive(actuator=own.name, linkage=JointLinkage(

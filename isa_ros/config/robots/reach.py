@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 import math
 
-from isa_ros.config.robots.drives import Cylinder, DriveConfig
+from isa_ros.config.robots.drives import CylinderBetweenLinks, DriveConfig
 from isa_ros.config.robots.geometry import motion_of
 from isa_ros.config.text.sections import Place
 from isa_ros.core.units import MILLI
@@ -104,7 +104,7 @@ def refuse_lever(
         Its lever changes its sign in the range of the joint, or is too short for a port.
 
     """
-    if not isinstance(own.linkage, Cylinder):
+    if not isinstance(own.linkage, CylinderBetweenLinks):
         return
     reach = reach_of(sheet, drive, own, joints, place)
     if reach is None:

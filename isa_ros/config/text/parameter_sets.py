@@ -188,7 +188,7 @@ def kind_of(parameters: Parameters, union: Any) -> str:
 
 def members(union: Any) -> dict[str, type[Parameters]]:
     """
-    Return the classes of a union by their kind: the name in small letters.
+    Return the classes of a union by their kind: `Parameters.KIND`, or the name in small letters.
 
     A last word that all of them share is left out: LinearPlant | RotaryPlant are linear
     and rotary.
@@ -197,4 +197,4 @@ def members(union: Any) -> dict[str, type[Parameters]]:
     words = {cls: re.findall('[A-Z][a-z0-9]*', cls.__name__) for cls in classes}
     if len(classes) > 1 and len({w[-1] for w in words.values()}) == 1:
         words = {cls: w[:-1] for cls, w in words.items()}
-    return {'_'.join(w).lower(): cls for cls, w in words.items()}
+    return {cls.KIND or '_'.join(w).lower(): cls for cls, w in words.items()}

@@ -30,8 +30,10 @@ _FASTEST_TEAR = 1e5                 # 1/s, of the pressure beside one
 
 
 @dataclass(frozen=True, kw_only=True)
-class RigidWall(Parameters):
+class BoreWall(Parameters):
     """A bore in a block: its wall does not give way."""
+
+    KIND = 'rigid'
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +54,7 @@ class HoseWall(Parameters):
     expansion_mpa: float = parameter('pressure of the expansion', 'MPa', gt=0.0, le=70.0)
 
 
-Wall = RigidWall | TubeWall | HoseWall
+Wall = BoreWall | TubeWall | HoseWall
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +65,7 @@ class LinePart(Parameters):
     outlet: str = name('a manifold or the tank')
     length_m: float = parameter('of the line', 'm', gt=0.0, le=1000.0)
     bore_mm: float = parameter('its inner diameter', 'mm', ge=0.5, le=500.0)
-    wall: Wall = nested(RigidWall())
+    wall: Wall = nested(BoreWall())
     lumps: float = parameter(
         'number of lumps', '1', absent=8.0, source='derived, resonances within 1 %',
         is_whole=True, ge=1.0, le=64.0)

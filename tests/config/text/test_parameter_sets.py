@@ -4,7 +4,7 @@ from dataclasses import dataclass
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros.config.text.parameter_sets import as_tree, build, build_one_of, members
+from isa_ros.config.text.parameter_sets import as_tree, build, build_one_of, kind_of, members
 from isa_ros.config.text.sections import merge, Place, written
 from isa_ros.core.parameter import choice, parameter, Parameters, SMALLEST
 from isa_ros.core.suggest import alternatives
@@ -118,6 +118,21 @@ def test_kinds_leave_out_a_shared_last_word() -> None:
     assert list(members(SmallDrive | Sheet)) == ['small_drive', 'sheet']
     section = written({'kind': 'small', 'bore_mm': 1.0}, RUN)
     assert build_one_of(SmallDrive | BigDrive, section, RUN) == SmallDrive(bore_mm=1.0)
+
+
+class StrangeDrive(Parameters):
+    """A stand-in with a kind of its own."""
+
+    KIND = 'other'
+
+
+def test_a_kind_may_differ_from_the_name_of_its_class() -> None:
+    """Its name counts for the shared last word of the others."""
+    assert list(members(SmallDrive | StrangeDrive)) == ['small', 'other']
+    assert kind_of(StrangeDrive(), SmallDrive | StrangeDrive) == 'other'
+    section = written({'kind': 'other'}, RUN)
+    assert build_one_of(SmallDrive | StrangeDrive, section, RUN) == StrangeDrive()
+    assert as_tree(StrangeDrive(), SmallDrive | StrangeDrive) == {'kind': 'other'}
 
 
 @pytest.mark.parametrize('wrong, expected', [
