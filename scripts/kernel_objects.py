@@ -5,7 +5,7 @@ from pathlib import Path
 import tempfile
 from typing import NamedTuple
 
-from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_library import address_in, Call, call_in
 from isa_ros.core.objects import library_of, object_of, own_target, TARGETS
 from isa_ros.errors import ConfigError
@@ -21,7 +21,7 @@ class Objects(NamedTuple):
         """Return where the object of an entry is, once it is made."""
         return self.directory / f'{symbol}.{target}.o'
 
-    def make(self, entry: Entry) -> dict[str, str]:
+    def make(self, entry: KernelEntry) -> dict[str, str]:
         """Make those of an entry that are missing; return why a target has none."""
         refused = {}
         for name in dict.fromkeys((*self.targets, own_target().name)):
@@ -33,7 +33,7 @@ class Objects(NamedTuple):
                     refused[name] = str(error).rpartition(': ')[2]
         return refused
 
-    def address(self, entry: Entry) -> int:
+    def address(self, entry: KernelEntry) -> int:
         """
         Return the address of an entry's machine code in this process.
 
@@ -45,11 +45,11 @@ class Objects(NamedTuple):
         """
         return address_in(self._loaded(entry), entry.symbol)
 
-    def call(self, entry: Entry) -> Call:
+    def call(self, entry: KernelEntry) -> Call:
         """Return what calls an entry with its arguments; raises as `address`."""
         return call_in(self._loaded(entry), entry.symbol)
 
-    def _loaded(self, entry: Entry) -> ctypes.CDLL:
+    def _loaded(self, entry: KernelEntry) -> ctypes.CDLL:
         """Return the library of an entry alone."""
         path = self.directory / f'{entry.symbol}.so'
         if not path.exists():

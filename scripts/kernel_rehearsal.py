@@ -19,7 +19,7 @@ from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMIN
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core import kernel
 from isa_ros.core.bound import run_rounds
-from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.kinds import Kind
 from isa_ros.core.signals import COMMAND
@@ -58,9 +58,10 @@ class WantedKernel(NamedTuple):
     """Kernels in it, of which its time of compilation is roughly a multiple."""
 
     @property
-    def entry(self) -> Entry:
+    def entry(self) -> KernelEntry:
         """Return the entry."""
-        return Entry(getattr(import_module(self.module), self.name), self.kind, self.is_called)
+        return KernelEntry(
+            getattr(import_module(self.module), self.name), self.kind, self.is_called)
 
 
 class _Nowhere:
@@ -124,15 +125,15 @@ def _ticks_of(name: str) -> None:
 
 
 @contextmanager
-def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
+def _noted(objects: Objects) -> Iterator[dict[str, KernelEntry]]:
     """Note the entries that are asked for; bound kernels of ticks do nothing."""
-    found: dict[str, Entry] = {}
+    found: dict[str, KernelEntry] = {}
 
-    def address_of(entry: Entry) -> int:
+    def address_of(entry: KernelEntry) -> int:
         found[entry.symbol] = entry
         return objects.address(entry) if _runs(entry) else _ADDRESS
 
-    def call_of(entry: Entry) -> Callable[[tuple[Any, ...]], Any]:
+    def call_of(entry: KernelEntry) -> Callable[[tuple[Any, ...]], Any]:
         found[entry.symbol] = entry
         return objects.call(entry)
 
@@ -145,12 +146,12 @@ def _noted(objects: Objects) -> Iterator[dict[str, Entry]]:
         kernel.entry_address.cache_clear()  # of what does nothing
 
 
-def _runs(entry: Entry) -> bool:
+def _runs(entry: KernelEntry) -> bool:
     """Return whether a bound kernel runs: a loop of others, or one whose numbers Python needs."""
     return entry.kernel is run_rounds or entry.kernel.__module__.startswith(_NEEDED)
 
 
-def _wanted(entry: Entry) -> WantedKernel:
+def _wanted(entry: KernelEntry) -> WantedKernel:
     own = entry.kernel
     return WantedKernel(own.__module__, own.__name__, entry.kind, entry.is_called, entry.symbol,
                         len(kernels_of(own)))

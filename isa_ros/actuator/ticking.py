@@ -5,7 +5,7 @@ from typing import NamedTuple
 from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.core.bound import Bound
-from isa_ros.core.kernel import Entry, entry_of, part_of_kernel
+from isa_ros.core.kernel import entry_of, KernelEntry, part_of_kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 import numpy as np
@@ -48,6 +48,6 @@ def bound_tick(own: Ticked) -> Bound:
     return Bound(group_tick, own)
 
 
-def tick_kernel() -> Entry:
+def tick_kernel() -> KernelEntry:
     """Return the tick as it is compiled and kept."""
     return entry_of(group_tick, kind_of(ticked(memory_of(1), 1)))

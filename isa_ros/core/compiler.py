@@ -5,7 +5,7 @@ from types import FunctionType
 from typing import Any
 
 from isa_ros.core.first_compilation import first_compilation
-from isa_ros.core.kernel import Entry, Kernel, kernel
+from isa_ros.core.kernel import Kernel, kernel, KernelEntry
 from isa_ros.core.kernel_cache import cache_of
 from isa_ros.core.kinds import Kind, RESULT_WORDS
 from isa_ros.core.words import put_results, result_kind, TABLE, type_of, value_at
@@ -62,7 +62,7 @@ def _named(entry: Any, function: Any) -> Any:
     return kernel(entry)
 
 
-def compiled_entry(entry: Entry) -> Any:
+def compiled_entry(entry: KernelEntry) -> Any:
     """Return the compiled version of an entry; it is compiled or loaded if need be."""
     compiled = entry.compiled
     if not compiled.overloads:
@@ -71,7 +71,7 @@ def compiled_entry(entry: Entry) -> Any:
     return made
 
 
-def result_of(entry: Entry) -> Kind | None:
+def result_of(entry: KernelEntry) -> Kind | None:
     """Return the kind of what the kernel of a called entry returns, None: nothing."""
     own = entry.kernel.compiled
     given = tuple(type_of(entry.kind).types)
@@ -81,7 +81,7 @@ def result_of(entry: Entry) -> Kind | None:
     return result_kind(own.overloads[given].signature.return_type)
 
 
-def address_of(entry: Entry) -> int:
+def address_of(entry: KernelEntry) -> int:
     """Return the address of an entry's machine code."""
     made = compiled_entry(entry)
     address: int = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name)

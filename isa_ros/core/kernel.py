@@ -72,7 +72,7 @@ class Kernel:
         return call(arguments)
 
     def _found(self, kinds: tuple[Kind, ...]) -> Callable[[tuple[Any, ...]], Any] | None:
-        entry = Entry(self, TupleKind(tuple, kinds), is_called=True)
+        entry = KernelEntry(self, TupleKind(tuple, kinds), is_called=True)
         call = call_in_library(entry)
         if call is not None:
             self._calls[kinds] = call
@@ -111,7 +111,7 @@ def kernel_function(function: _Function) -> _Function:
     return function
 
 
-class Entry(NamedTuple):
+class KernelEntry(NamedTuple):
     """A kernel over words, ``int64_t f(const int64_t *table)`` in C: without Python around it."""
 
     kernel: Any
@@ -141,7 +141,7 @@ class Entry(NamedTuple):
 
 
 @cache
-def entry_address(entry: Entry) -> int:
+def entry_address(entry: KernelEntry) -> int:
     """Return the address of an entry's machine code; once it is known it stays."""
     found = address_in_library(entry)
     if found:
@@ -150,6 +150,6 @@ def entry_address(entry: Entry) -> int:
     return address_of(entry)
 
 
-def entry_of(function: Any, kind: Kind) -> Entry:
+def entry_of(function: Any, kind: Kind) -> KernelEntry:
     """Return a kernel over a memory of a kind as an entry."""
-    return Entry(function, kind)
+    return KernelEntry(function, kind)

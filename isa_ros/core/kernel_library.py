@@ -37,7 +37,7 @@ _FIRST_BYTES = 8192     # with all of the first core
 
 
 class NamedKernel(Protocol):
-    """A kernel with the kinds that its machine code is made for: `isa_ros.core.kernel.Entry`."""
+    """A kernel with the kinds its machine code is made for: `isa_ros.core.kernel.KernelEntry`."""
 
     @property
     def symbol(self) -> str:

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.core.compiler import compiled_entry, result_of
 from isa_ros.core.elf import undefined_symbols
-from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_library import result_symbol
 from isa_ros.core.kinds import result_form
 from isa_ros.core.object_runtime import RUNTIME
@@ -62,7 +62,7 @@ def own_target() -> Target:
     raise ConfigError(f'processor {architecture}: no target, valid: {", ".join(TARGETS)}')
 
 
-def object_of(entries: Mapping[str, Entry], target: Target) -> bytes:
+def object_of(entries: Mapping[str, KernelEntry], target: Target) -> bytes:
     """
     Return the object file (ELF) of entries by exported names.
 
@@ -136,7 +136,7 @@ _TEXT = """
 """
 
 
-def _module_of(name: str, entry: Entry) -> Any:
+def _module_of(name: str, entry: KernelEntry) -> Any:
     """Return a module with an entry, of which nothing else is seen outside."""
     made = compiled_entry(entry)
     module = made.library._get_module_for_linking().clone()

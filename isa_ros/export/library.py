@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-from isa_ros.core.kernel import Entry, entry_of
+from isa_ros.core.kernel import entry_of, KernelEntry
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of, Target, TARGETS
 from isa_ros.errors import ConfigError
@@ -32,7 +32,7 @@ def kernels_of(own: Exported, target: Target) -> bytes:
 
 
 @cache
-def _object(kernels: tuple[tuple[str, Entry], ...], target: Target) -> bytes:
+def _object(kernels: tuple[tuple[str, KernelEntry], ...], target: Target) -> bytes:
     """Return the object of kernels by their names."""
     return object_of(dict(kernels), target)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from isa_ros.core import kernel_library
 from isa_ros.core.bound import Bound
-from isa_ros.core.kernel import Entry, kernel
+from isa_ros.core.kernel import kernel, KernelEntry
 from isa_ros.core.kernel_library import own_targets, symbol_of
 from isa_ros.core.kinds import kind_of, TupleKind
 from isa_ros.core.objects import library_of, object_of, own_target
@@ -71,9 +71,9 @@ def home(tmp_path_factory):
     calls = {'times': [(2,), (2.5,)], 'of_record': [(row, 0.5)], 'fill': [(array,)],
              'scaled': [(1.5,)], 'table': [(array,)],
              'of_many': [(array, (1, 2), True), (array[::2], (1, 2), True)]}
-    entries = [Entry(getattr(own, name), kind_of(arguments), is_called=True)
+    entries = [KernelEntry(getattr(own, name), kind_of(arguments), is_called=True)
                for name, several in calls.items() for arguments in several]
-    entries.append(Entry(own.count, kind_of(own.Rows(np.zeros(2, np.int64)))))
+    entries.append(KernelEntry(own.count, kind_of(own.Rows(np.zeros(2, np.int64)))))
     code = object_of({entry.symbol: entry for entry in entries}, own_target())
     library_of([code], path / f'{own_target().name}.so')
     return path
@@ -164,8 +164,8 @@ def test_a_symbol_tells_forms_and_kinds_apart():
     found = {symbol_of(double, form, kind)
              for form in ('bound', 'called') for kind in (one, other)}
     assert len(found) == 4
-    assert Entry(double, one).symbol == symbol_of(double, 'bound', one)
-    assert Entry(double, one, is_called=True).symbol == symbol_of(double, 'called', one)
+    assert KernelEntry(double, one).symbol == symbol_of(double, 'bound', one)
+    assert KernelEntry(double, one, is_called=True).symbol == symbol_of(double, 'called', one)
     assert symbol_of(double, 'called', one) in found
     assert all(name.startswith('double_') and name.isidentifier() for name in found)
 
@@ -210,7 +210,7 @@ def pick(own):
 
 def test_a_kernel_that_raises_ends_the_process(tmp_path):
     rows = Rows(np.array([1]))
-    entry = Entry(pick, kind_of(rows))
+    entry = KernelEntry(pick, kind_of(rows))
     library_of([object_of({'isa_pick': entry}, own_target())], tmp_path / 'lib.so')
     program = f"""
 import ctypes, sys

@@ -11,7 +11,7 @@ import sys
 import isa_ros
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.core.kernel import Entry
+from isa_ros.core.kernel import KernelEntry
 from isa_ros.run import warm_up
 import pytest
 
@@ -89,7 +89,7 @@ def test_a_first_start_compiles_by_two_processes(
     """If the other one fails, this one compiles all."""
     began = []
     with monkeypatch.context() as patch:
-        patch.setattr(Entry, 'is_kept', lambda entry: False)
+        patch.setattr(KernelEntry, 'is_kept', lambda entry: False)
         patch.setattr(warm_up.os, 'sched_getaffinity', lambda _: {0, 1})
         if other is not None:
             patch.setattr(warm_up, '_OTHER', [sys.executable, '-c', other])
@@ -110,7 +110,7 @@ def test_a_first_start_compiles_by_two_processes(
 @pytest.mark.parametrize('why', ['kept', 'one core', 'no body'])
 def test_another_process_starts_only_if_it_helps(
         monkeypatch: pytest.MonkeyPatch, why: str) -> None:
-    monkeypatch.setattr(Entry, 'is_kept', lambda entry: why == 'kept')
+    monkeypatch.setattr(KernelEntry, 'is_kept', lambda entry: why == 'kept')
     monkeypatch.setattr(
         warm_up.os, 'sched_getaffinity', lambda _: {0} if why == 'one core' else {0, 1})
     monkeypatch.setattr(warm_up, '_compile_by_two', lambda _: pytest.fail('a process started'))
