@@ -89,7 +89,7 @@ def _ended() -> Iterator[None]:
         raise
 
 
-class Progress:
+class KernelProgress:
     """Prints how many kernels are made and the time left by sizes; on a terminal one line."""
 
     def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic) -> None:
@@ -123,7 +123,7 @@ class Progress:
 class Making:
     """The jobs of all processes, the largest first."""
 
-    def __init__(self, objects: Objects, progress: Progress) -> None:
+    def __init__(self, objects: Objects, progress: KernelProgress) -> None:
         self._objects, self._progress = objects, progress
         self._waiting: list[Job] = []
         self._running: dict[Future[Any], Job] = {}
@@ -201,7 +201,7 @@ def main(arguments: Sequence[str], stream: TextIO = sys.stdout) -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(dir=given.out, prefix='.') as directory:
         objects = Objects(Path(directory), tuple(targets))
-        making = Making(objects, Progress(stream))
+        making = Making(objects, KernelProgress(stream))
         making.run(len(os.sched_getaffinity(0)))
         for symbol, refused in making.refused.items():
             for name, reason in refused.items():

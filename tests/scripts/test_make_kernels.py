@@ -20,8 +20,7 @@ import pytest
 from scripts import kernel_objects, kernel_rehearsal, make_kernels
 from scripts.kernel_objects import Objects
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, WantedKernel
-from scripts.make_kernels import (
-    link, lower_long, main, make, Making, PERIOD_S, Progress)
+from scripts.make_kernels import KernelProgress, link, lower_long, main, make, Making, PERIOD_S
 from tests.text.terminal import Terminal
 
 ROOT = Path(__file__).parents[2]
@@ -140,7 +139,7 @@ def test_what_cannot_be_called_is_named(alone, tmp_path, monkeypatch):
 
 def test_progress_says_how_many_and_the_time_left():
     times, said = iter([100.0, 100.0 + PERIOD_S, 106.0, 106.1, 108.0]), io.StringIO()
-    progress = Progress(said, lambda: next(times))
+    progress = KernelProgress(said, lambda: next(times))
     progress.left, progress.total = 40, 5
     progress.show(['tick'])
     progress.made, progress.done, progress.left = 2, 30, 10
@@ -157,7 +156,7 @@ def test_progress_says_how_many_and_the_time_left():
 def test_no_time_is_foretold_by_the_first_jobs(done, rest):
     """They compile what the others share, so that their sizes foretell a multiple of the time."""
     times, said = iter([50.0, 52.0]), io.StringIO()
-    progress = Progress(said, lambda: next(times))
+    progress = KernelProgress(said, lambda: next(times))
     progress.total, progress.done, progress.left = 7, done, 100 - done
     progress.show(['tick'])
     assert said.getvalue() == f'kernels: 0 of 7, 2 s, {rest}: tick\n'
@@ -165,7 +164,7 @@ def test_no_time_is_foretold_by_the_first_jobs(done, rest):
 
 def test_progress_on_a_terminal_is_one_line():
     times, said = iter([0.0, 2.0, 4.0, 5.0]), Terminal()
-    progress = Progress(said, lambda: next(times))
+    progress = KernelProgress(said, lambda: next(times))
     progress.total, progress.left, progress.done, progress.made = 3, 20, 40, 2
     progress.show(['tick'])
     progress.show(['merge'])
@@ -234,7 +233,7 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch, tmp_path):
     monkeypatch.setattr(
         make_kernels, 'wait', lambda futures, *_: SimpleNamespace(done=list(futures)))
     said = io.StringIO()
-    progress = Progress(said)
+    progress = KernelProgress(said)
     making = Making(objects, progress)
     assert progress.total == 1
     making.run(1)
