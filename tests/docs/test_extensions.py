@@ -99,7 +99,7 @@ def test_a_bus_is_a_file_and_a_row(copied: PatchedCopy) -> None:
     copied.add('isa_ros/fieldbus/toy.py', _TOY)
     copied.replace(
         'isa_ros/fieldbus/request.py', "    SERIAL: Bus('serial.line'",
-        "    'toy': Bus('toy', 'nobody', (Argument('place', 'any'),)),\n"
+        "    'toy': Bus('toy', 'nobody', (BusArgument('place', 'any'),)),\n"
         "    SERIAL: Bus('serial.line'")
     assert len(copied.touched) == 2
     assert copied.python(_OPENS) == "nowhere ('nowhere', 2, 5)\nno such place\n"

@@ -12,7 +12,7 @@ RAIL = textwrap.dedent('''\
     from dataclasses import dataclass
     from typing import Any, ClassVar
 
-    from isa_ros.config.runs.body_config import BodyConfig, Made
+    from isa_ros.config.runs.body_config import BodyConfig, BodyInputs
     from isa_ros.config.text.key_tables import KeyTable
     from isa_ros.config.text.keys import Key, NAME, ParameterSet
     from isa_ros.config.text.sections import Place, Section
@@ -91,7 +91,7 @@ RAIL = textwrap.dedent('''\
             return JointStates(
                 f'/{self.prefix}rail', ['rail'], ['place'], ['speed'], []),
 
-        def body(self, made: Made) -> Rail:
+        def body(self, made: BodyInputs) -> Rail:
             return Rail(self.sheet, made.rows, made.step_ns * 1e-9)
     ''')
 RUN_RAIL = """

@@ -154,7 +154,7 @@ _NAMED_PIPES = '''"""Pipes, with a word before each message."""
 from pathlib import Path
 
 from benchmarks.peers import multiprocessing_pipes
-from benchmarks.peers.link import Link
+from benchmarks.peers.link import PeerEnd
 
 _WORD = b'tick'
 
@@ -162,7 +162,7 @@ _WORD = b'tick'
 class Worded:
     """An end that adds the word and takes it off."""
 
-    def __init__(self, end: Link) -> None:
+    def __init__(self, end: PeerEnd) -> None:
         self._end = end
         self.close = end.close
 
@@ -174,11 +174,11 @@ class Worded:
         return message and message.removeprefix(_WORD)
 
 
-def coordinator_end(directory: Path, n_workers: int) -> Link:
+def coordinator_end(directory: Path, n_workers: int) -> PeerEnd:
     return Worded(multiprocessing_pipes.coordinator_end(directory, n_workers))
 
 
-def worker_end(directory: Path, index: int) -> Link:
+def worker_end(directory: Path, index: int) -> PeerEnd:
     return Worded(multiprocessing_pipes.worker_end(directory, index))
 '''
 _OVER_PIPES = """
