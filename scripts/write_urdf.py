@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.config.runs.run_file import load_run
 
 URDF = Path(__file__).resolve().parents[1] / 'urdf'
@@ -20,7 +19,7 @@ def texts() -> Iterator[tuple[Path, str]]:
     for name in LEGS:
         run = load_run(find(name, CONFIG))
         if run.leg is not None:
-            yield URDF / f'{run.leg.model}_leg.urdf', urdf_of(run, run.leg)
+            yield URDF / f'{run.leg.model}_leg.urdf', run.description(run.leg, URDF)
 
 
 if __name__ == '__main__':

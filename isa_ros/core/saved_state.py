@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 FORMAT = 5
 MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
-TIME_BYTES = 8    # at the begin of a snapshot of an actuator or a leg: t, ns
+TIME_BYTES = 8    # at the begin of a snapshot of an actuator or a body: t, ns
 _BYTES = ('load', 'requests', 'stops')
 _CHECKSUM = 'sha256'
 _SHOWN = 12  # digits of a digest

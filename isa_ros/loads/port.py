@@ -2,7 +2,7 @@
 The load port: the copy of its load that an actuator integrates during one tick.
 
 ``x`` is the load's side of the force sensor in the actuator's coordinate (m or rad),
-``force`` the force that the sensor transmits, > 0 pushing out. A shared load (the leg) is
+``force`` the force that the sensor transmits, > 0 pushing out. A shared load (a body) is
 linearised anew every tick; the load of a single actuator is the same equation with constant
 coefficients plus the forces of `isa_ros.loads.forces`.
 """

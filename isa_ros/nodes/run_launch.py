@@ -14,11 +14,9 @@ from typing import Any
 
 from ament_index_python import packages as ament_packages
 from isa_ros.config.paths import CONFIG, CONTROLLERS, find, find_drawing, SCENARIOS
-from isa_ros.config.robot_description import description_of
-from isa_ros.config.runs.leg_control import control_tag, controllers_of, MANAGER, Ros2Controllers
-from isa_ros.config.runs.leg_description import urdf_of
-from isa_ros.config.runs.robot_config import RobotConfig
-from isa_ros.config.runs.run_config import LegConfig, RunConfig
+from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.config.runs.body_control import control_tag, controllers_of, MANAGER, Ros2Controllers
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
 from isa_ros.errors import ConfigError
@@ -92,13 +90,12 @@ def _viewers(
             package=PUBLISHER, executable=PUBLISHER,
             namespace=f'{own}/{body.prefix}'.strip('/'), parameters=[{
                 'robot_description': ParameterValue(
-                    _description(run, body, folder, tags.get(body.name, [])), value_type=str),
+                    run.description(body, folder, tags.get(body.name, [])), value_type=str),
                 'use_sim_time': True}], remappings=of_run))
     if has_rviz:
         body = _only(run, 'rviz:=true')
         _refuse_missing(installed, 'rviz:=true', [PUBLISHER, 'rviz2'])
-        fixed = ['-f', f'{body.prefix}{body.tree.links[0].name}'] if isinstance(
-            body, RobotConfig) else []
+        fixed = ['-f', body.root_frame] if body.root_frame else []
         nodes.append(Node(
             package='rviz2', executable='rviz2', namespace=f'{own}/{body.prefix}'.strip('/'),
             arguments=['-d', str(find_drawing(f'rviz/{body.kind}.rviz')), *fixed],
@@ -106,18 +103,12 @@ def _viewers(
     return nodes
 
 
-def _described(run: RunConfig) -> list[LegConfig | RobotConfig]:
+def _described(run: RunConfig) -> list[BodyConfig]:
     """Return the bodies with a description."""
-    return [body for body in run.bodies if isinstance(body, (LegConfig, RobotConfig))]
+    return [body for body in run.bodies if body.has_urdf]
 
 
-def _description(
-        run: RunConfig, body: LegConfig | RobotConfig, folder: Path, tag: list[str]) -> str:
-    return (urdf_of(run, body, tag) if isinstance(body, LegConfig)
-            else description_of(body, folder, tag))
-
-
-def _only(run: RunConfig, given: str) -> LegConfig | RobotConfig:
+def _only(run: RunConfig, given: str) -> BodyConfig:
     bodies = _described(run)
     if len(bodies) != 1:
         raise ConfigError(f'{given}: {run.source} has no leg or robot, or several')

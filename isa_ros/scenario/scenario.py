@@ -49,7 +49,7 @@ class Scenario:
 
     name: str
     run: RunConfig
-    """With the scenario's own loads and start of the leg: simulate and record this one."""
+    """With the scenario's own loads and starts of bodies: simulate and record this one."""
     n_ticks: int | None
     """None: until stopped."""
     tracks: tuple[Track, ...]

@@ -38,7 +38,7 @@ class Ground(Parameters):
         'shear damping of sole and ground', 'N s/m', ge=1.0, le=1e4)
 
     def __post_init__(self) -> None:
-        """Refuse a sole that springs back faster than the leg's steps can follow."""
+        """Refuse a sole that springs back faster than the steps of a body can follow."""
         super().__post_init__()
         least = SHORTEST_RELAXATION * self.tangential_stiffness
         if self.tangential_damping < least:

@@ -9,7 +9,7 @@ Conventions
 - Every kernel returns (x, r, dr/dq).
 
 Equations L2-L5 of docs/equations.md. Neglected: play and compliance of pins and links,
-their mass (it is part of the leg's links).
+their mass (it is part of the links of the body).
 """
 
 import math

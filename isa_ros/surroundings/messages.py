@@ -8,6 +8,9 @@ of a body's topics. A column is one number of the sample: ``height``, or ``posit
 from collections.abc import Sequence
 from typing import NamedTuple
 
+JOINT_STATES = 'joint_states'
+"""Topic of the joints of a body, after its prefix."""
+
 
 class JointStates(NamedTuple):
     """Position (rad | m), speed and effort (Nm | N) of joints: sensor_msgs/JointState."""

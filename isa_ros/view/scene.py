@@ -1,5 +1,5 @@
 """
-The scene of a run: legs and robots by their URDF, other actuators as a cylinder or a rotor.
+The scene of a run: bodies by their URDF, other actuators as a cylinder or a rotor.
 
 Bodies and actuators stand side by side along y. A body without a URDF, as one of another
 simulator, is shown by its actuators.
@@ -10,11 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from isa_ros.actuator.config import ConfiguredActuator
-from isa_ros.config.robot_description import description_of
 from isa_ros.config.runs.body_config import BodyConfig
-from isa_ros.config.runs.leg_config import LegConfig
-from isa_ros.config.runs.leg_description import urdf_of
-from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.messages import JointStates, Odometry
@@ -53,14 +49,11 @@ def _described(
         run: RunConfig, body: BodyConfig, folder: Path, place: Floats,
         first: int) -> list[SceneNode]:
     """Return the nodes of a body; none without a URDF, or where its file cannot be read here."""
+    if not body.has_urdf:
+        return []
     try:
-        if isinstance(body, LegConfig):
-            text = urdf_of(run, body)
-        elif isinstance(body, RobotConfig):
-            text = description_of(body, folder)
-        else:
-            return []
-        return urdf_nodes(text, body.label, _moved(run, body, place), first)
+        return urdf_nodes(
+            run.description(body, folder), body.label, _moved(run, body, place), first)
     except (ConfigError, ElementTree.ParseError, OSError):
         return []
 

@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import isa_ros
 from isa_ros.config.paths import CONTROLLERS, find
-from isa_ros.config.runs.leg_control import controllers_of
+from isa_ros.config.runs.body_control import controllers_of
 from isa_ros.errors import ConfigError
 import pytest
 from tests.launch.stand_ins import Context, ProcessExited

@@ -7,7 +7,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.paths import CONFIG, CONTROLLERS, find, shipped
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
-from isa_ros.config.runs.leg_control import control_tag, controllers_of, MANAGER
+from isa_ros.config.runs.body_control import control_tag, controllers_of, MANAGER
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import FORCE, IMPEDANCE
 from isa_ros.core.signals import HAS_SETPOINT

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import isa_ros
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.runs.leg_control import control_tag
+from isa_ros.config.runs.body_control import control_tag
 from isa_ros.config.text.yaml_text import dump
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue

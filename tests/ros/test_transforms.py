@@ -7,7 +7,6 @@ from typing import Any
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.robot_description import description_of
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.yaml_text import dump
@@ -133,6 +132,5 @@ def test_the_root_of_a_robot_is_a_link_of_its_description():
     for name in ('quadruped', 'crane', 'two_joint_leg', 'hyq_quadruped'):
         run = load_run(find(name, CONFIG))
         (body,) = run.bodies
-        assert isinstance(body, RobotConfig)
-        assert f'<link name="{body.sheet.links[0].name}"' in description_of(
-            body, Path('.'))
+        assert isinstance(body, RobotConfig) and body.root_frame == body.sheet.links[0].name
+        assert f'<link name="{body.root_frame}"' in run.description(body, Path())

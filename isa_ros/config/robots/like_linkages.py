@@ -10,6 +10,7 @@ from isa_ros.config.text.sections import (
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 
 
 def linkage_section(
@@ -58,7 +59,7 @@ def _like(name: Any, linkages: Mapping[str, Section], place: Place) -> Section:
     leg, _, joint = str(name).partition('.')
     if leg in leg_names():
         section, _ = leg_section(leg, str(place))
-        refuse_unknown([joint], ('haa', 'hfe', 'kfe'), Place(place.file, f'{place.key}.{leg}'))
+        refuse_unknown([joint], JOINTS, Place(place.file, f'{place.key}.{leg}'))
         found = section[joint]
         assert isinstance(found, dict)
         return {key: value for key, value in found.items() if key not in ('low_deg', 'high_deg')}

@@ -8,8 +8,10 @@ turn). Every link of the URDF keeps its own axes as a frame of the link that it 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from isa_ros.config.robots.urdf import Urdf, UrdfJoint
+from isa_ros.config.paths import drawings, find_drawing
+from isa_ros.config.robots.urdf import load_urdf, Urdf, UrdfJoint
 from isa_ros.config.robots.urdf_numbers import Floats, Pose
+from isa_ros.config.text.sections import Place
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointKind, Matrix, matrix, RobotFrame, RobotJoint, RobotLink, Vector, vector)
@@ -33,6 +35,19 @@ class _Part(NamedTuple):
     name: str
     pose: Pose
     """In the axes of the link of the tree."""
+
+
+def tree_of_file(name: str, is_free: bool, place: Place) -> RobotTree:
+    """Return the tree of a URDF beside the run file at a place, or of a shipped one."""
+    path = place.folder / name
+    where = f'{place / "urdf"} = {name}'
+    try:
+        if not path.is_file():
+            path = find_drawing(f'urdf/{name}')
+    except ConfigError as error:
+        raise ConfigError(f'{where}: there is no such file in the folder of the run file; '
+                          f'shipped: {", ".join(drawings("urdf"))}') from error
+    return tree_of(load_urdf(path), is_free, path.name)
 
 
 def tree_of(urdf: Urdf, is_free: bool, where: str) -> RobotTree:

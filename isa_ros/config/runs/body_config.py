@@ -4,8 +4,9 @@ A body of a run: what a kind of bodies declares, and all that others need to kno
 A kind is one class, derived from `BodyConfig`, and one row in `isa_ros.config.runs.body_kinds`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from isa_ros.actuator.config import ConfiguredActuator
@@ -57,6 +58,8 @@ class BodyConfig:
     """Of its section, the kind left out."""
     is_given: ClassVar[bool] = False
     """Whether the caller of a simulation makes it."""
+    has_urdf: ClassVar[bool] = False
+    """Whether it has a `description`."""
 
     name: str = BODY
     """Of its topics and of the columns of a result."""
@@ -155,6 +158,27 @@ class BodyConfig:
 
         """
         raise ConfigError(f'{place} is not used: a scenario cannot start {self.called}')
+
+    @property
+    def root_frame(self) -> str:
+        """Return the frame that its description is drawn in, '': the world."""
+        return ''
+
+    def description(self, sheets: Mapping[str, ActuatorSheet], folder: Path,
+                    control: Iterable[str] = ()) -> str:
+        """
+        Return its URDF with the frames of a run, if it `has_urdf`.
+
+        ``sheets`` are those of its actuators by name, the run file is in ``folder``, and
+        ``control`` is a tag of ros2_control.
+
+        Raises
+        ------
+        ConfigError
+            Its file is neither there nor shipped.
+
+        """
+        raise NotImplementedError
 
     def refuse_absent(self, file: str) -> None:
         """

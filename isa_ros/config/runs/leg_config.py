@@ -1,15 +1,17 @@
 """A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 import math
+from pathlib import Path
 from typing import Any, ClassVar
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import leg_section, material_section
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyInputs
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
+from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import (
@@ -86,6 +88,7 @@ class LegConfig(BodyConfig):
     """
 
     kind: ClassVar[str] = 'leg'
+    has_urdf: ClassVar[bool] = True
     KEYS: ClassVar[KeyTable] = KeyTable((
         Key('model', ANY_NAME, 'the packaged leg', None, 'required', InText.ALWAYS),
         Key('joints', KeyTable(tuple(
@@ -176,6 +179,11 @@ class LegConfig(BodyConfig):
         leg = replace(self, start=build(LegStart, default | written(tree, place), place))
         leg.refuse_start(step_ns, place)
         return leg
+
+    def description(self, sheets: Mapping[str, ActuatorSheet], folder: Path,
+                    control: Iterable[str] = ()) -> str:
+        """Return its URDF, which is made from its sheet; as `BodyConfig.description`."""
+        return urdf_of(self, sheets, control)
 
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return a line if the ticks are too long for the ground."""

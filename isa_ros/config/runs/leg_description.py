@@ -11,14 +11,13 @@ has the places of its pins: of a four-bar. A slider-crank has their distances on
 cylinder and load cell are at the joint, in the axes of the link. Bodies are plain rods.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 import math
+from typing import TYPE_CHECKING
 
 from isa_ros.actuator.ratings import ratings_of
 from isa_ros.actuator.setpoint_range import setpoint_bounds
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.runs.leg_config import LegConfig
-from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.elementary import atan2
 from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
@@ -27,6 +26,9 @@ from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegLink
 from isa_ros.surroundings.linkage import levers, rod_eye
 from isa_ros.surroundings.linkage_sheet import Direct, FourBar, Joint, linkage_record
 import numpy as np
+
+if TYPE_CHECKING:
+    from isa_ros.config.runs.leg_config import LegConfig
 
 WORLD = 'world'
 SPEED = 20.0            # rad/s: limit of a joint, assumed
@@ -46,20 +48,22 @@ _ALONG_X = (0.0, _HALF, 0.0)            # from the axis of a drawn cylinder, z
 _ALONG_Y = (_HALF, 0.0, 0.0)
 
 
-def urdf_of(run: RunConfig, leg: LegConfig, control: Iterable[str] = ()) -> str:
+def urdf_of(
+        leg: 'LegConfig', sheets: Mapping[str, ActuatorSheet],
+        control: Iterable[str] = ()) -> str:
     """
-    Return the URDF of a leg of a run.
+    Return the URDF of a leg of a run; ``sheets`` are those of its actuators by name.
 
     Links are the frames of its messages: with the name of the leg and a slash in front, but for
     `WORLD` and the frames of actuators, whose names differ in a run. Joints have the names of
     its joint states. ``control`` is a tag of ros2_control.
     """
     return '\n'.join(['<?xml version="1.0"?>', f'<robot name="{leg.model}_leg">',
-                      f'  <link name="{WORLD}"/>', *_bodies(run, leg), *_mounts(leg),
+                      f'  <link name="{WORLD}"/>', *_bodies(leg, sheets), *_mounts(leg),
                       *_units(leg), *control, '</robot>', ''])
 
 
-def _bodies(run: RunConfig, leg: LegConfig) -> Iterator[str]:
+def _bodies(leg: 'LegConfig', sheets: Mapping[str, ActuatorSheet]) -> Iterator[str]:
     """Yield slider, links and joints."""
     body, own = leg.sheet.body, leg.prefix
     places = _places(leg)
@@ -75,7 +79,7 @@ def _bodies(run: RunConfig, leg: LegConfig) -> Iterator[str]:
         low, high = math.radians(sheet.low_deg), math.radians(sheet.high_deg)
         yield from _joint(
             joint_name(joint), 'revolute', f'{own}{parent}', f'{own}{child}', *places[joint],
-            limit=(low, high, _torque(sheet, run.actuator(dict(leg.joints)[joint]).sheet), SPEED))
+            limit=(low, high, _torque(sheet, sheets[dict(leg.joints)[joint]]), SPEED))
         end = (body.hip_drop_m, -body.hip.length_m, 0.0) if child == 'hip' else (
             link.length_m, 0.0, 0.0)
         length = math.hypot(*end)
@@ -89,7 +93,7 @@ def _bodies(run: RunConfig, leg: LegConfig) -> Iterator[str]:
     yield from _fixed('foot_joint', f'{own}calf', f'{own}foot', (body.calf.length_m, 0.0, 0.0))
 
 
-def _places(leg: LegConfig) -> dict[str, tuple[Vector, Vector]]:
+def _places(leg: 'LegConfig') -> dict[str, tuple[Vector, Vector]]:
     """Return place and turn of each joint on its parent."""
     body = leg.sheet.body
     return {'haa': (_ZERO, _FROM_BASE),
@@ -97,7 +101,7 @@ def _places(leg: LegConfig) -> dict[str, tuple[Vector, Vector]]:
             'kfe': ((body.thigh.length_m, 0.0, 0.0), _ZERO)}
 
 
-def _mounts(leg: LegConfig) -> Iterator[str]:
+def _mounts(leg: 'LegConfig') -> Iterator[str]:
     """Yield the frames of the actuators and of their load cells."""
     parents = {'haa': 'slider_link', 'hfe': 'hip', 'kfe': 'thigh'}
     for joint, actuator in leg.joints:
@@ -122,7 +126,7 @@ def _cylinder(sheet: FourBar, knee: Vector) -> tuple[Vector, Vector]:
     return (knee[0] - pin_x, knee[1] - sheet.sense * pin_y, knee[2]), (0.0, 0.0, angle)
 
 
-def _units(leg: LegConfig) -> Iterator[str]:
+def _units(leg: 'LegConfig') -> Iterator[str]:
     """Yield the frames of the inertial units, at their places in the axes of their links."""
     for imu in leg.imus:
         own, frame = imu.sheet, imu_frame(leg.prefix, imu.name)

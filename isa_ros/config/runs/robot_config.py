@@ -1,7 +1,7 @@
 """A robot as the body of a run: the tree of a URDF, and a table of what moves and touches it."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 import math
@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.paths import drawings, find_drawing
 from isa_ros.config.robots.contacts import (
     CONTACT, ContactConfig, Contacts, contacts_of, GROUND, robot_contact)
 from isa_ros.config.robots.drives import DRIVE, DriveConfig, Drives, drives_of, robot_drive
@@ -19,12 +18,12 @@ from isa_ros.config.robots.patterns import names_in
 from isa_ros.config.robots.reach import reach_of, refuse_lever, refuse_stroke
 from isa_ros.config.robots.start import (
     coordinates, refuse_start, robot_start, RobotStartConfig, root_pose, START, start_of)
-from isa_ros.config.robots.tree import RobotTree, tree_of
+from isa_ros.config.robots.tree import RobotTree, tree_of_file
 from isa_ros.config.robots.tree_text import TREE, tree_from
 from isa_ros.config.robots.units import errors_of, refuse_units, robot_unit, UNIT, UnitConfig
-from isa_ros.config.robots.urdf import load_urdf
 from isa_ros.config.runs.body_config import BodyConfig, BodyInputs
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
+from isa_ros.config.runs.robot_description import description_of
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, InText, Key, Layer, TEXT, Value
@@ -60,6 +59,7 @@ class RobotConfig(BodyConfig):
     """
 
     kind: ClassVar[str] = 'robot'
+    has_urdf: ClassVar[bool] = True
     KEYS: ClassVar[KeyTable] = KeyTable((
         Key('urdf', TEXT, 'a file beside the run file, or a shipped one', in_text=InText.ALWAYS),
         Key('root', choice_of((FREE, FIXED)), 'whether its root moves', FIXED,
@@ -97,7 +97,7 @@ class RobotConfig(BodyConfig):
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
            is_checked: bool) -> tuple[BodyConfig, Mapping[str, Section]]:
         """Return a robot, and the sections of its drives; as `BodyConfig.of`."""
-        tree = tree_from(values['tree']) if values['tree'] is not None else _tree_of(
+        tree = tree_from(values['tree']) if values['tree'] is not None else tree_of_file(
             values['urdf'], values['root'] == FREE, place)
         drives, origins = drives_of(values['drives'], values['linkages'], tree, place / 'drives')
         joints = [link.joint.name for link in tree.links[1:]]
@@ -253,6 +253,16 @@ class RobotConfig(BodyConfig):
             return x, levers[0]
         return at
 
+    @property
+    def root_frame(self) -> str:
+        """Return the frame of its root, which may move."""
+        return f'{self.prefix}{self.tree.links[0].name}'
+
+    def description(self, sheets: Mapping[str, ActuatorSheet], folder: Path,
+                    control: Iterable[str] = ()) -> str:
+        """Return the URDF of its file; as `BodyConfig.description`."""
+        return description_of(self, folder, control)
+
     def messages(self, step_ns: int) -> Sequence[BodyMessage]:
         """Return joints, pose of a free root, forces on the feet, readings of its units."""
         return robot_messages(self.prefix, self.sheet, list(zip(
@@ -272,16 +282,3 @@ def _length(own: DriveConfig) -> str:
     if isinstance(own.linkage, Direct):
         return f'its offset_deg = {own.linkage.offset_deg:g} deg'
     return f'its retracted_length_mm = {own.linkage.retracted_length_mm:g} mm'
-
-
-def _tree_of(name: str, is_free: bool, place: Place) -> RobotTree:
-    """Return the tree of a URDF beside the run file, or of a shipped one."""
-    path = place.folder / name
-    where = f'{place / "urdf"} = {name}'
-    try:
-        if not path.is_file():
-            path = find_drawing(f'urdf/{name}')
-    except ConfigError as error:
-        raise ConfigError(f'{where}: there is no such file in the folder of the run file; '
-                          f'shipped: {", ".join(drawings("urdf"))}') from error
-    return tree_of(load_urdf(path), is_free, path.name)

@@ -1,8 +1,9 @@
 """The configuration of one run: its keys, every parameter filled in, immutable, loss-free text."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
+from pathlib import Path
 from typing import Any
 
 from isa_ros.actuator.link import LinkSheet, NO_LINK
@@ -94,6 +95,11 @@ class RunConfig:
     def only_body(self) -> BodyConfig | None:
         """Return the body of a run file with ``body``; None: several, or another name."""
         return self.body(BODY) if len(self.bodies) == 1 else None
+
+    def description(self, body: BodyConfig, folder: Path, control: Iterable[str] = ()) -> str:
+        """Return the URDF of a body with the frames of this run; as `BodyConfig.description`."""
+        return body.description(
+            {name: self.actuator(name).sheet for _, name in body.joints}, folder, control)
 
     def body_of(self, actuator: str) -> BodyConfig | None:
         """Return the body that an actuator moves; None: it has a load of its own."""

@@ -1,10 +1,10 @@
 """The URDF of a run's leg: where its sensors are, what it is made of, and its shipped copies."""
 
 import math
+from pathlib import Path
 from xml.etree import ElementTree
 
 import isa_ros
-from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.surroundings.bodies.leg.inertial import carried, link_motion, LINKS
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState, Coordinates
@@ -27,7 +27,7 @@ RATES = (0.7, -20.0, 35.0, -50.0)
 def described(config='leg', **changes):
     """Return a run with four inertial units, and the URDF of its leg."""
     run = isa_ros.load(config).replace({'leg.imus': IMUS} | changes).configuration
-    return run, urdf_of(run, run.leg)
+    return run, run.description(run.leg, Path())
 
 
 @pytest.fixture
@@ -118,7 +118,7 @@ def test_two_legs_have_links_of_their_own():
     run = isa_ros.load(two_legs()).configuration
     links, joints = [], []
     for leg in run.bodies:
-        robot = ElementTree.fromstring(urdf_of(run, leg))
+        robot = ElementTree.fromstring(run.description(leg, Path()))
         links.append({link.get('name') for link in robot.iter('link')})
         joints.append({joint.get('name') for joint in robot.iter('joint')
                        if joint.get('type') != 'fixed'})

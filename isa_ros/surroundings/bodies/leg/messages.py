@@ -5,11 +5,10 @@ from collections.abc import Sequence
 from isa_ros.surroundings.bodies.leg.leg import InertialUnit
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 from isa_ros.surroundings.inertial_unit import fields_of_unit
-from isa_ros.surroundings.messages import BodyMessage, columns, Force, Inertial, JointStates
+from isa_ros.surroundings.messages import (
+    BodyMessage, columns, Force, Inertial, JOINT_STATES, JointStates)
 
 SLIDER = 'slider'
-JOINT_STATES = 'joint_states'
-"""Topic, after the prefix of a leg."""
 
 
 def joint_name(name: str) -> str:

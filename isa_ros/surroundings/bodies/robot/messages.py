@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 
-from isa_ros.surroundings.bodies.leg.messages import JOINT_STATES
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet, RobotUnit
 from isa_ros.surroundings.inertial_unit import fields_of_unit
 from isa_ros.surroundings.messages import (
-    BodyMessage, columns, Force, Inertial, JointStates, Odometry)
+    BodyMessage, columns, Force, Inertial, JOINT_STATES, JointStates, Odometry)
 
 ODOM = 'odom'
 GROUND_CONTACT = 'ground_contact'

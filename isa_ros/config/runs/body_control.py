@@ -16,7 +16,7 @@ from isa_ros.config.runs.body_config import BodyConfig, JOINT_COMMAND
 from isa_ros.config.text.sections import names_at, Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.bodies.leg.messages import JOINT_STATES
+from isa_ros.surroundings.messages import JOINT_STATES
 
 PLUGIN = 'joint_state_topic_hardware_interface/JointStateTopicSystem'
 MANAGER = 'controller_manager'

@@ -8,17 +8,20 @@ cylinder: at the joint of a linkage, at the pin of a cylinder between two links.
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from isa_ros.config.paths import find_drawing
 from isa_ros.config.robots.drives import CylinderBetweenLinks, DriveConfig
-from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.core.units import MILLI
+
+if TYPE_CHECKING:
+    from isa_ros.config.runs.robot_config import RobotConfig
 
 Element = ElementTree.Element
 
 
-def description_of(robot: RobotConfig, folder: Path, control: Iterable[str] = ()) -> str:
+def description_of(robot: 'RobotConfig', folder: Path, control: Iterable[str] = ()) -> str:
     """
     Return the description of a robot whose run file is in ``folder``.
 
@@ -56,7 +59,7 @@ def _names(root: Element) -> Iterator[Element]:
         yield from joint.iterfind('child')
 
 
-def _mounts(robot: RobotConfig, root: Element) -> list[Element]:
+def _mounts(robot: 'RobotConfig', root: Element) -> list[Element]:
     """Return links and fixed joints of the frames of the actuators."""
     there = {link.get('name') for link in root.iterfind('link')}
     found: list[Element] = []

@@ -1,12 +1,12 @@
 """A leg under ros2_control: the shipped controllers, the tag of the hardware, and its URDF."""
 
+from pathlib import Path
 from xml.etree import ElementTree
 
 import isa_ros
 from isa_ros.config.paths import CONTROLLERS, shipped
-from isa_ros.config.runs.leg_control import (
+from isa_ros.config.runs.body_control import (
     control_tag, controllers_of, INTERFACES, PLUGIN, Ros2Controllers)
-from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.messages import JointStates
 import pytest
@@ -18,7 +18,8 @@ LEG = isa_ros.load('leg').configuration.leg
 
 def tag_of(run, leg, commands=('position',), namespace=''):
     """Return the tag in the URDF of a leg of a run, and the URDF."""
-    root = ElementTree.fromstring(urdf_of(run, leg, control_tag(leg, commands, namespace)))
+    root = ElementTree.fromstring(
+        run.description(leg, Path(), control_tag(leg, commands, namespace)))
     tag, = root.iterfind('ros2_control')
     return tag, root
 
@@ -69,9 +70,10 @@ def test_the_tag_has_the_joints_and_topics_of_the_leg(config, file):
 
 def test_without_a_tag_the_urdf_is_the_shipped_one():
     run = isa_ros.load('leg').configuration
-    urdf, tag = urdf_of(run, LEG), [*control_tag(LEG, ('effort',), '')]
+    urdf, tag = run.description(LEG, Path()), [*control_tag(LEG, ('effort',), '')]
     assert 'ros2_control' not in urdf
-    assert urdf_of(run, LEG, tag) == urdf.replace('</robot>', '\n'.join([*tag, '</robot>']))
+    assert run.description(LEG, Path(), tag) == urdf.replace(
+        '</robot>', '\n'.join([*tag, '</robot>']))
 
 
 def test_topics_are_those_of_the_namespace_and_of_the_leg():
