@@ -1,8 +1,12 @@
 """The scene of a run: every leg, robot and lone actuator, with what moves it."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import ClassVar
 
 import isa_ros
+from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.surroundings.messages import JointStates
 from isa_ros.view.nodes import SceneMotion
 from isa_ros.view.scene import scene_of
 import pytest
@@ -74,3 +78,33 @@ def test_a_robot_whose_urdf_is_elsewhere_is_shown_by_its_actuators(tmp_path, mon
     assert [name for node in nodes for name in node.channels] == [
         'lift.position', 'tilt.position']
     assert nodes[0].place[1] < nodes[2].place[1]
+
+
+class ArmConfig(BodyConfig):
+    """A body of a kind that the package does not have; its URDF names the file's folder."""
+
+    kind: ClassVar[str] = 'arm'
+    has_urdf: ClassVar[bool] = True
+
+    def messages(self, step_ns):
+        return [JointStates('/joint_states', ['elbow'], ['angle'], ['speed'], [])]
+
+    def description(self, sheets, folder, control=()):
+        (name, sheet), = sheets.items()
+        size = sheet.plant.drive.stroke
+        return f"""<robot name="arm"><link name="{folder.name}"/><link name="{name}_arm">
+            <visual><geometry><box size="{size} 0.1 0.1"/></geometry></visual></link>
+            <joint name="elbow" type="revolute"><parent link="{folder.name}"/>
+            <child link="{name}_arm"/><axis xyz="0 0 1"/></joint></robot>"""
+
+
+def test_a_body_of_any_kind_is_shown_by_its_own_urdf(monkeypatch):
+    run = isa_ros.load('press').configuration
+    own = replace(run, bodies=(ArmConfig(joints=(('elbow', 'slide'),)),))
+    root, arm = scene_of(own, FOLDER)
+    assert (root.name, root.motion) == ('config', SceneMotion.FIXED)
+    assert (arm.name, arm.motion, arm.channels) == (
+        'slide_arm', SceneMotion.TURN, ('body.angle',))
+    assert arm.shapes[0].size == pytest.approx((0.25, 0.1, 0.1))
+    monkeypatch.setattr(ArmConfig, 'has_urdf', False)
+    assert [node.name for node in scene_of(own, FOLDER)] == ['slide', 'slide']
