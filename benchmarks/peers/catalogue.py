@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
-from benchmarks.peers.link import PeerEnd
+from benchmarks.peers.peer_end import PeerEnd
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 

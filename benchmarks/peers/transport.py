@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 from benchmarks.peers.catalogue import ends, Peer, peer
-from benchmarks.peers.link import PeerEnd
+from benchmarks.peers.peer_end import PeerEnd
 from benchmarks.peers.worker import load_kernels
 from isa_ros.bench.child import environment
 from isa_ros.config.assembly import surroundings_of

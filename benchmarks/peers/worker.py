@@ -6,7 +6,7 @@ from pathlib import Path
 import sys
 
 from benchmarks.peers.catalogue import ends, peer
-from benchmarks.peers.link import PeerEnd
+from benchmarks.peers.peer_end import PeerEnd
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.config.assembly import timing_of
 from isa_ros.config.runs.run_config import RunConfig

@@ -15,7 +15,7 @@ import threading
 
 from benchmarks.peers import catalogue
 from benchmarks.peers.catalogue import ends, peer, PEERS
-from benchmarks.peers.link import PeerEnd
+from benchmarks.peers.peer_end import PeerEnd
 from benchmarks.peers.transport import PeerTransport, RUN_ID
 from benchmarks.peers.worker import answer_steps
 from isa_ros.actuator.actuator import SmartActuator
@@ -177,7 +177,7 @@ def test_the_answer_to_another_tick_does_not_count(run):
 
 @pytest.mark.parametrize('one', PEERS, ids=lambda one: one.name)
 def test_every_peer_has_both_ends(one):
-    """As `PeerModule` declares them, also where the package that a file imports is not installed."""
+    """As `PeerModule` declares them, also where what a file imports is not installed."""
     source = (Path(catalogue.__file__).parent / f'{one.module}.py').read_text()
     given = {node.name: [argument.arg for argument in node.args.args]
              for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}

@@ -154,7 +154,7 @@ _NAMED_PIPES = '''"""Pipes, with a word before each message."""
 from pathlib import Path
 
 from benchmarks.peers import multiprocessing_pipes
-from benchmarks.peers.link import PeerEnd
+from benchmarks.peers.peer_end import PeerEnd
 
 _WORD = b'tick'
 
