@@ -7,7 +7,6 @@ import struct
 import isa_ros
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.ethercat.datagrams import LONGEST_FRAME
 from tests.fieldbus.ethercat.raw_master import (
     APRD, APWR, at, BRD, BWR, FPRD, frame_of, FRMW, INIT, LRD, LRW, LWR, OP, PREOP, RawMaster,
     SAFEOP, Sent)
@@ -16,6 +15,8 @@ from tests.fuzz.bytes_of import altered
 from tests.fuzz.property import Broken
 
 LEG = isa_ros.load('leg').configuration
+LONGEST_FRAME = 1514
+"""Ethernet frame without its check sequence."""
 FRAMES_EACH = 25
 """Frames that one ring gets before a new one is made."""
 STATES = (INIT, PREOP, SAFEOP, OP)

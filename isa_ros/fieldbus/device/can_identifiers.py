@@ -14,8 +14,6 @@ MOST_BYTES = 8              # of a data frame of classical CAN
 LARGEST = 0x7FF             # 11 bits
 
 INVALID = 1 << 31           # bit of a COB-ID: the object is off
-NO_REMOTE = 1 << 30         # bit of a COB-ID of a TPDO: not sent on request
-GENERATES = 1 << 30         # bit of object 0x1005: the node sends SYNC
 EXTENDED = 1 << 29          # bit of a COB-ID: 29 bits
 
 _RESTRICTED = (

@@ -19,8 +19,6 @@ HAS_NEXT = 0x8000
 """Flag: another datagram follows."""
 TYPE_DATAGRAMS = 1
 """Type of a frame in the top four bits of its header."""
-LONGEST_FRAME = 1514
-"""Ethernet frame without its check sequence."""
 
 _PROTOCOL, _ADDRESS, _IRQ = 12, 2, 8
 """Offsets: of the protocol in a frame, of address and IRQ in a datagram."""
