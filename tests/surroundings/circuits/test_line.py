@@ -2,6 +2,8 @@
 
 import math
 
+from isa_ros.config.text.parameter_sets import members
+from isa_ros.surroundings.circuits.line import Wall
 import numpy as np
 import pytest
 from tests.surroundings.circuits.sheets import Bench, sheet_of
@@ -121,3 +123,7 @@ def test_lumps_are_whole() -> None:
     with pytest.raises(Exception, match=r'parts\.line\.lumps = 2\.5, must be a whole number'):
         sheet_of(SHUT + 'line: {kind: line, inlet: start, outlet: end, length_m: 2.0, '
                  'bore_mm: 12.0, lumps: 2.5}\n')
+
+
+def test_walls_have_the_kinds_that_files_say():
+    assert list(members(Wall)) == ['rigid', 'tube', 'hose']
