@@ -5,10 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from isa_ros.analysis.report.panels import columns, Curve, Group, Panel
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.body_config import BODY, BodyConfig
-from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.surroundings.messages import JointStates
 import numpy as np
 
-_JOINTS = ('HAA', 'HFE', 'KFE')
 _AXES: Mapping[int, Sequence[str]] = {3: 'xyz', 4: 'wxyz'}
 _MOST_CURVES = 6
 _SHOWN = {'rad': 'deg', 'rad/s': 'deg/s'}
@@ -30,7 +29,8 @@ def body_group(body: BodyConfig, signals: Signals) -> Group:
         if name not in signals:
             continue
         if field.shape:
-            panels += _vector(body, field.name, signals.over_time(name), field.unit)
+            panels += _vector(_joints_of(body, field.name, signals.run.step_ns), field.name,
+                              signals.over_time(name), field.unit)
         else:
             scalars.setdefault((_kind(field.name), field.unit), []).append(field.name)
     for (kind, unit), names in scalars.items():
@@ -49,16 +49,22 @@ def _rank(panel: Panel) -> int:
     return 1 if 'force' in panel.title or 'torque' in panel.title else 2
 
 
-def _vector(body: BodyConfig, name: str, signal: Signal, unit: str) -> Iterator[Panel]:
+def _joints_of(body: BodyConfig, field: str, step_ns: int) -> list[str]:
+    """Return the joints that a field has a number of, as the messages of the body say."""
+    return [name.removesuffix('_joint').upper() for message in body.messages(step_ns)
+            if isinstance(message, JointStates)
+            for columns_of in (message.position, message.velocity, message.effort)
+            for name, column in zip(message.names, columns_of) if column.startswith(f'{field}[')]
+
+
+def _vector(joints: Sequence[str], name: str, signal: Signal, unit: str) -> Iterator[Panel]:
     """Yield the panels of a field of several numbers; two units are two panels."""
     units, n = unit.split(', '), signal.values.shape[1]
     size = n // len(units)
-    is_joint = isinstance(body, LegConfig) and name in ('position', 'velocity', 'torque')
-    labels = (_JOINTS if is_joint else
-              _AXES.get(size, [str(k) for k in range(size)]))
+    labels = joints or _AXES.get(size, [str(k) for k in range(size)])
     for k, own in enumerate(units):
         part = Signal(signal.t, signal.values[:, k * size:(k + 1) * size])
-        words = f'{"joint " if is_joint else ""}{name}'.replace('_', ' ')
+        words = f'{"joint " if joints else ""}{name}'.replace('_', ' ')
         yield _panel(f'{words}{_PARTS.get(own, "") if len(units) > 1 else ""}', own,
                      _caption(name), columns(part, labels))
 

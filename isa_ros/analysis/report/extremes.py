@@ -1,6 +1,7 @@
 """Extreme values of the signals of a run, as recorded."""
 
 from isa_ros.analysis.report.circuit_panels import circuit_signals
+from isa_ros.analysis.report.ground import upward_forces
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.supplies import GAS, OIL, PRESSURE
 from isa_ros.core.units import MPA
@@ -34,12 +35,8 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
             series = recorded.values / scale
             values.append((
                 f'{part} {what}', float(series.min()), float(series.max()), unit))
-    for leg in signals.run.legs:
-        if f'{leg.name}.foot_force' not in signals:
-            continue
-        ground = signals[f'{leg.name}.foot_force'][:, 2]
-        values.append((
-            f'{leg.prefix}ground force upwards', float(ground.min()), float(ground.max()), 'N'))
+    for name, force in upward_forces(signals):
+        values.append((f'{name} force upwards', float(force.min()), float(force.max()), 'N'))
     return values
 
 

@@ -1,5 +1,6 @@
 """Results of a run as a table of text: motion, force, pressure, settling and oil."""
 
+from isa_ros.analysis.report.ground import upward_forces
 from isa_ros.analysis.report.key_figures import pressure_range, settling_time
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
@@ -13,10 +14,9 @@ _HEADER = ('', 'from', 'to', '', 'peak', '', 'pressure, MPa', 'settled, s', 'oil
 def outcome(signals: Signals) -> str:
     """Return a line for each actuator, and one for each ground's force."""
     lines = aligned([_HEADER, *(_row(signals, own) for own in signals.run.actuators)], 'lrrlrlrrr')
-    for leg in signals.run.legs:
-        ground = signals[f'{leg.name}.foot_force'][:, 2]
-        lines.append(f'{leg.prefix}ground: at most {digits(float(ground.max()), 3)} N upwards, '
-                     f't = {float(signals.time[int(ground.argmax())]):.3f} s')
+    for name, force in upward_forces(signals):
+        lines.append(f'{name}: at most {digits(float(force.max()), 3)} N upwards, '
+                     f't = {float(signals.time[int(force.argmax())]):.3f} s')
     lines.append('settled: within 2 % of the motion; pressure: gauge; oil: drawn from the supply')
     return '\n'.join(lines)
 

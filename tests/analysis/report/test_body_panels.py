@@ -1,11 +1,13 @@
 """Panels of bodies, made of the fields of their samples."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import isa_ros
 from isa_ros.analysis.report.body_panels import body_group
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.core.fields import Field
+from isa_ros.surroundings.messages import columns, JointStates
 import numpy as np
 import pytest
 
@@ -18,14 +20,17 @@ class Body:
     name, kind, called = 'body', 'robot', 'the robot'
     joints = (('hip', 'ram'),)
 
-    def __init__(self, *fields: Field) -> None:
-        self.fields = fields
+    def __init__(self, *fields: Field, states: Sequence[JointStates] = ()) -> None:
+        self.fields, self._states = fields, states
+
+    def messages(self, step_ns: int) -> Sequence[JointStates]:
+        return self._states
 
 
-def group_of(*fields: Field, without: str = '') -> Any:
+def group_of(*fields: Field, without: str = '', states: Sequence[JointStates] = ()) -> Any:
     rng = np.random.default_rng(7)
     run = isa_ros.load('rig_linear').configuration
-    return body_group(Body(*fields), Signals(run, {
+    return body_group(Body(*fields, states=states), Signals(run, {
         f'body.{own.name}': Signal(T, rng.standard_normal((5, *own.shape)))
         for own in fields if own.name != without}, T, 'here'))
 
@@ -33,6 +38,19 @@ def group_of(*fields: Field, without: str = '') -> Any:
 def test_a_vector_is_a_panel_with_a_curve_for_each_axis():
     panel, = group_of(Field('orientation', '1', '', (4,))).panels
     assert panel.label == 'orientation' and [own.label for own in panel.curves] == [*'wxyz']
+
+
+def test_numbers_of_joints_are_named_as_the_messages_of_the_body_say():
+    """A column of another field, and a joint behind them, have no part in it."""
+    field = Field('position', 'rad', '', (2,))
+    states = JointStates('/joint_states', ['boom_joint', 'arm_joint', 'slider'],
+                         [*columns('position', 2), 'height'], [*columns('velocity', 2), 'speed'],
+                         [])
+    panel, = group_of(field, states=[states]).panels
+    assert panel.label == 'joint position, deg' and [own.label for own in panel.curves] == [
+        'BOOM', 'ARM']
+    panel, = group_of(field).panels
+    assert panel.label == 'position, deg' and [own.label for own in panel.curves] == ['0', '1']
 
 
 def test_two_units_are_two_panels():
