@@ -1,7 +1,7 @@
 """
 One run under launch: the nodes of every actuator of a configuration, and the coordinator.
 
-Legs and robots are also shown, with their lengths and sensors: by robot_state_publisher where that
+Bodies with a URDF are also shown, with their sensors: by robot_state_publisher where that
 is installed, one each, and with ``rviz:=true`` the only one by rviz. ``ros2_control:=FILE`` starts
 the controllers of a parameter file for the only one.
 """
@@ -111,7 +111,7 @@ def _described(run: RunConfig) -> list[BodyConfig]:
 def _only(run: RunConfig, given: str) -> BodyConfig:
     bodies = _described(run)
     if len(bodies) != 1:
-        raise ConfigError(f'{given}: {run.source} has no leg or robot, or several')
+        raise ConfigError(f'{given}: {run.source} has no body with a URDF, or several')
     return bodies[0]
 
 

@@ -109,7 +109,7 @@ def test_each_of_several_legs_is_shown_in_its_namespace(leg, installed, tmp_path
     publishers = leg(config=str(tmp_path / 'two.yaml'), namespace='lab')[:2]
     assert [own.given['namespace'] for own in publishers] == ['lab/left', 'lab/right']
     assert all(dict(own.given['remappings'])['/tf'] == '/lab/tf' for own in publishers)
-    with pytest.raises(ConfigError, match='has no leg or robot, or several'):
+    with pytest.raises(ConfigError, match='has no body with a URDF, or several'):
         leg(config=str(tmp_path / 'two.yaml'), rviz='true')
 
 

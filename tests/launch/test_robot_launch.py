@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import isa_ros
 from isa_ros.errors import ConfigError
 import pytest
+from tests.scripting.test_own_body import RIG, Slide
 import yaml
 
 
@@ -55,5 +56,25 @@ def test_several_robots_have_their_nodes_descriptions_and_frames(robot, installe
         joints = {joint.get('name') for joint in root.iterfind('joint')}
         assert set(body.joint_space) <= joints
         assert dict(own.given['remappings'])['/tf'] == '/lab/tf'
-    with pytest.raises(ConfigError, match='herd.yaml has no leg or robot, or several'):
+    with pytest.raises(ConfigError, match='herd.yaml has no body with a URDF, or several'):
         robot(config=str(tmp_path / 'herd.yaml'), rviz='true')
+
+
+def test_the_only_robot_with_a_name_is_drawn_in_the_frame_of_its_root(robot, installed, tmp_path):
+    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
+    (tmp_path / 'one.yaml').write_text(yaml.safe_dump({
+        'name': 'one', 'robots': {'r2': {'file': 'quadruped'}}}))
+    _, rviz, *_ = robot(config=str(tmp_path / 'one.yaml'), rviz='true')
+    assert rviz.given['arguments'][2:] == ['-f', 'r2/trunk']
+    assert rviz.given['namespace'] == 'r2'
+
+
+def test_a_body_without_a_urdf_has_no_publisher(robot, installed, tmp_path):
+    """Neither is it the only one that rviz could show."""
+    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
+    (tmp_path / 'slide.yaml').write_text(yaml.safe_dump(RIG | {
+        'body': RIG['body'] | {'class': f'{Slide.__module__}:Slide'}}))
+    nodes = robot(config=str(tmp_path / 'slide.yaml'))
+    assert [own.given['executable'] for own in nodes] == ['actuator', 'actuator', 'coordinator']
+    with pytest.raises(ConfigError, match='slide.yaml has no body with a URDF, or several'):
+        robot(config=str(tmp_path / 'slide.yaml'), rviz='true')
