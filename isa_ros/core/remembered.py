@@ -30,8 +30,8 @@ def remembered(function: Callable[_Sets, _R]) -> Callable[_Sets, _R]:
     """
     Let a function of parameter sets return its last results again, for the same values.
 
-    A run asks for the same several times, a sweep for those that it does not change each time. What
-    is returned must not be changed.
+    A run asks for the same several times, a sweep for those that it does not change at each of its
+    runs. What is returned must not be changed.
     """
     @lru_cache(MOST)
     def answer(question: _Question) -> object:
