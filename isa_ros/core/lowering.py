@@ -10,6 +10,8 @@ of all that it reaches, and optimised once, by the same passes.
 from collections.abc import Iterator
 from typing import Any
 
+from isa_ros.core.lowering_shortcuts import LOWERING
+from isa_ros.core.shortcuts import take
 from llvmlite.ir.instructions import CallInstr
 from numba import _dynfunc  # type: ignore[attr-defined]
 from numba.core.codegen import CPUCodeLibrary
@@ -93,8 +95,15 @@ def _no_wrapper(*arguments: Any, **named: Any) -> None:
     """Make nothing that Python or C calls: entries have their own."""
 
 
+def declare() -> None:
+    """Let numba know all that kernels may call, which the first one would wait for."""
+    context: Any = cpu_target.target_context
+    context.refresh()
+
+
 def lower_only() -> None:
     """Let this process lower kernels from now on: they get into objects, and none can be run."""
+    take(LOWERING)
     context: Any = cpu_target.target_context
     rtsys.initialize(context)   # its functions are compiled as always
     context.codegen()._library_class = Lowered
