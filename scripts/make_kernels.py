@@ -27,7 +27,7 @@ import time
 from typing import Any, NamedTuple, TextIO
 
 from isa_ros.core.kernel_library import own_targets, SHIPPED
-from isa_ros.core.lowering import lower_only
+from isa_ros.core.lowering import declare, lower_only
 from isa_ros.core.objects import library_of, own_target, Target, TARGETS
 from isa_ros.text.progress import terminal_line
 from scripts.kernel_objects import Objects
@@ -139,8 +139,9 @@ class Making:
         self._progress.left += job.size
 
     def run(self, processes: int) -> None:
-        """Do all jobs."""
-        context = multiprocessing.get_context('spawn')
+        """Do all jobs; what has been imported and declared here need not be by each process."""
+        declare()
+        context = multiprocessing.get_context('fork')
         with ProcessPoolExecutor(processes, context, initializer=lower_long) as pool, _ended():
             while self._waiting or self._running:
                 while self._waiting and len(self._running) < processes:

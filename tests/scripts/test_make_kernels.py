@@ -196,6 +196,7 @@ class Now:
 
     def __init__(self, processes, context, initializer):
         assert initializer is lower_long
+        assert context.get_start_method() == 'fork'     # numba is imported once
 
     def __enter__(self):
         return self
@@ -225,6 +226,7 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch, tmp_path):
     def made(own, given):
         order.append((own.symbol, given))
         return {'v3': 'undefined sin'} if own.symbol == 'b' else {}
+    monkeypatch.setattr(make_kernels, 'declare', lambda: order.append('declared'))
     monkeypatch.setattr(make_kernels, 'tick', lambda: wanted('tick', 200))
     monkeypatch.setattr(make_kernels, 'rehearsals', lambda: ['leg', ALONE, 'arm'])
     monkeypatch.setattr(make_kernels, 'rehearse', rehearsed)
@@ -238,8 +240,8 @@ def test_the_largest_are_made_first_and_each_once(monkeypatch, tmp_path):
     assert progress.total == 1
     making.run(1)
     assert (progress.left, progress.done) == (0, 3 * 30 + 200 + 90 + 20 + 9 + 8)
-    assert order == [(name, objects) for name in (
-        'tick', ALONE, 'arm', 'b', 'leg', 'c', 'a', 'd')]
+    assert order == ['declared', *((name, objects) for name in (
+        'tick', ALONE, 'arm', 'b', 'leg', 'c', 'a', 'd'))]
     assert making.refused == {
         'tick': {}, 'd': {}, 'b': {'v3': 'undefined sin'}, 'c': {}, 'a': {}}
     assert said.getvalue().splitlines()[-1] == 'kernels: 5 of 5, 0 s, finished'
