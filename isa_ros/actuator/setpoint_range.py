@@ -46,7 +46,7 @@ _FLOAT_BYTES = 8
 MOST_TURNS = 1e4
 """Largest position of a motor either way."""
 LOAD_BEYOND = 0.5
-"""Of the stroke, for a load that a program moves beyond its end; end stops allow far less."""
+"""Of the stroke, for a load that a program moves beyond its end; end stops yield far less."""
 
 
 class Bounds(NamedTuple):
@@ -90,8 +90,10 @@ def positions(sheet: ActuatorSheet) -> Bounds:
 
 
 def load_positions(sheet: ActuatorSheet) -> Bounds:
-    """Return where a load may be that a program moves."""
+    """Return where a load may be that a program moves; that of a motor may turn without end."""
     own = positions(sheet)
+    if sheet.is_endless:
+        return Bounds(-math.inf, math.inf, own.unit, 'any number of turns')
     beyond = LOAD_BEYOND * (own.high - own.low)
     return Bounds(own.low - beyond, own.high + beyond, own.unit, 'half a stroke beyond the ends')
 

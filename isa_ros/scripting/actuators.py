@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from isa_ros.actuator.setpoint_range import LOAD_BEYOND
+from isa_ros.actuator.setpoint_range import Beyond, load_positions
 from isa_ros.config.runs.external_config import refuse_force, refuse_start
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
@@ -54,9 +54,8 @@ class Actuators:
         self._log: LogSink | None = None
         self._rows: NDArray[np.int64] = np.zeros(0, np.int64)
         sheets = [run.configuration.actuator(name).sheet for name in self.names]
-        self._units = ['rad' if own.is_rotary else 'm' for own in sheets]
-        self._strokes = np.array([
-            np.inf if own.is_endless else own.plant.drive.stroke for own in sheets])
+        self._places = [load_positions(sheet) for sheet in sheets]
+        self._lowest, self._highest = np.array([own[:2] for own in self._places]).T
 
     def start(self, position: ArrayLike | None = None, force: ArrayLike | None = None) -> None:
         """
@@ -137,13 +136,11 @@ class Actuators:
 
     def _refuse_far(self) -> None:
         """Refuse a position that is far outside the stroke, before it breaks the tick."""
-        place, stroke = self._port['x0'], self._strokes
-        is_far = np.abs(place - 0.5 * stroke) > (0.5 + LOAD_BEYOND) * stroke
+        place = self._port['x0']
+        is_far = (place < self._lowest) | (place > self._highest)
         for k in np.flatnonzero(is_far).tolist():
-            unit, beyond = self._units[k], LOAD_BEYOND * stroke[k]
-            raise ConfigError(
-                f'{self.names[k]}: position = {place[k]:g} {unit}, must be '
-                f'{-beyond:g} to {stroke[k] + beyond:g} {unit}: half a stroke beyond its ends')
+            found = Beyond('x0', 'position', float(place[k]), self._places[k])
+            raise ConfigError(f'{self.names[k]}: {found.shown}, {found.refusal}')
 
     @property
     def forces(self) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
+from isa_ros.actuator.setpoint_range import load_positions, RequestRange, SetpointRange
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, PRESSURE, SPOOL
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import SetpointError
@@ -187,3 +187,8 @@ def test_gains_alone_beyond_the_range_are_deleted_too():
     rows = requests_to_the_knee(position=50.0, stiffness=1e4)
     rows['kinds'][1] = HAS_GAINS
     assert request_range().admit(0, rows) == () and rows['kinds'][1] == HAS_GAINS
+
+
+def test_a_load_may_be_half_a_stroke_beyond_the_ends_and_that_of_a_motor_anywhere():
+    assert load_positions(actuator_sheet('isa_v5'))[:3] == (-0.05, pytest.approx(0.15), 'm')
+    assert load_positions(actuator_sheet('hydraulic_motor'))[:3] == (-math.inf, math.inf, 'rad')

@@ -139,7 +139,7 @@ def test_commands_controllers_and_a_log_that_grows() -> None:
     (lambda own: own.advance([0.0, 0.0], [0.0, 0.0], [0.0, 0.0], inverse_mass=[0.0, -1.0]),
      'out: inverse_mass = -1, must be >= 0'),
     (lambda own: own.advance([0.05, 0.1501], [0.0, 0.0], [0.0, 0.0]),
-     'out: position = 0.1501 m, must be -0.05 to 0.15 m: half a stroke beyond its ends'),
+     'out: position = 0.1501 m, must be -0.05 to 0.15 m, half a stroke beyond the ends'),
     (lambda own: own.advance([-0.0501, 0.05], [0.0, 0.0], [0.0, 0.0]),
      'back: position = -0.0501 m, must be -0.05 to 0.15 m'),
     (lambda own: own.start([0.04, 0.05], [1e6, 0.0]),
@@ -156,6 +156,24 @@ def test_what_cannot_be_is_refused(call, message: str) -> None:
         call(actuators)
     if 'starts' not in message:
         assert actuators.simulation.ticks == 0
+
+
+def test_the_load_of_a_motor_may_be_anywhere() -> None:
+    """As in a library of C; that of a cylinder beside it may not."""
+    drum = isa_ros.load('winch').configuration.actuators[0]
+    own = isa_ros.Actuators(isa_ros.load({
+        **RIG, 'body': {'kind': 'external', 'actuators': ['drum', 'out']},
+        'actuators': {'out': RIG['actuators']['out'], 'drum': {     # type: ignore[index]
+            'model': drum.model, 'initial_position_deg': 90.0, 'parameters': {'plant': {
+                'drive': {'displacement_cc_per_rad': 15.9, 'pressure_mpa': [20.0, 20.0],
+                          'speed_rpm': [100.0, 1500.0], 'volumetric_percent': [90.0, 99.2],
+                          'mechanical_percent': [92.0, 88.0], 'rated_pressure_mpa': 20.7},
+                'valve': {'flow': {'rated_flow_lpm': 40.0, 'rated_current_ma': 10.0}}}}}}}))
+    own._port['x0'] = 1e9, 0.15
+    own._refuse_far()
+    own._port['x0'] = 1e9, 0.16
+    with pytest.raises(ConfigError, match='^out: position = 0.16 m, must be -0.05 to 0.15 m'):
+        own._refuse_far()
 
 
 def test_a_run_without_one_external_body_is_refused() -> None:

@@ -97,7 +97,8 @@ def _references(sheet: ActuatorSheet) -> str:
 
 
 def _port(config: ConfiguredActuator, start: np.void) -> Iterator[Variable]:
-    is_rotary, bounds = config.sheet.is_rotary, load_positions(config.sheet)
+    is_rotary = config.sheet.is_rotary
+    bounds = None if config.sheet.is_endless else load_positions(config.sheet)
     for field, (name, unit, meaning) in PORT_FIELDS.items():
         unit = of_coordinate(unit, is_rotary)
         if field == 'x0':
