@@ -17,11 +17,12 @@ from isa_ros.actuator.requests import link_answer, mode_after, mode_command, ref
 from isa_ros.actuator.rest import put_at_rest
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
+from isa_ros.actuator.setpoint_in_force import setpoint_after, SetpointInForce
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.actuator.ticking import bound_tick, ticked
 from isa_ros.actuator.timing import Timing
 from isa_ros.actuator.tunable import GAINS
-from isa_ros.actuator.tuning import gain_after, gains_command, position_after, Tuning
+from isa_ros.actuator.tuning import gains_command, Tuning
 from isa_ros.core.bound import Bound
 from isa_ros.core.saved_state import TIME_BYTES, time_of
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
@@ -149,7 +150,7 @@ class SmartActuator:
 
         """
         limited = self.setpoint_range.admit(command, self.mode)
-        complete(command, position_after(self._pending, self._reu))
+        complete(command, self.setpoint.position)
         self.accept(command)
         return limited
 
@@ -175,6 +176,11 @@ class SmartActuator:
         `isa_ros.actuator.tunable.with_changed`.
         """
         self.accept(gains_command(self.tuning.accept(values)))
+
+    @property
+    def setpoint(self) -> SetpointInForce:
+        """Return its setpoint as it will be at the next tick; behind a link without its frames."""
+        return setpoint_after(self._pending, self._reu)
 
     @property
     def mode(self) -> int:
@@ -206,8 +212,8 @@ class SmartActuator:
     def parameter(self, name: str) -> float | str:
         """Return a value as it will be at the next tick, set by `tune`, a fault or a command."""
         own = self.tuning.known(name)
-        value = (gain_after(own.name, self._pending, self._reu) if own.name in GAINS
-                 else self.tuning.value(own.name))
+        value: float = (getattr(self.setpoint, GAINS[own.name]) if own.name in GAINS
+                        else self.tuning.value(own.name))
         return own.shown(value) if name == own.name else value / own.scale
 
     def tick(self, port: np.void | None = None) -> None:
@@ -232,11 +238,7 @@ class SmartActuator:
 
     @cached_property
     def advance(self) -> Bound:
-        """
-        Return its own tick over `ticked`; after a `tick` others may run it too, see `end_ticks`.
-
-        It is not needed where all of a process tick together.
-        """
+        """Return its own tick over `ticked`; after a `tick` others may run it: `end_ticks`."""
         return bound_tick(self.ticked)
 
     @property

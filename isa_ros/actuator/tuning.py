@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.link import link_record, NONE
 from isa_ros.actuator.rows import row_record
 from isa_ros.actuator.service_channel import nothing, ServiceChannel, travels
@@ -14,7 +13,7 @@ from isa_ros.actuator.tunable import (
 from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
-from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
+from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, local_port, LocalLoad, move_support, write_port
 from isa_ros.plant.plant import plant_record
@@ -221,15 +220,3 @@ def gains_command(values: Mapping[str, float]) -> np.void:
     for name, gain in GAINS.items():
         command[gain] = values.get(name, np.nan)
     return command
-
-
-def position_after(pending: np.record, reu: np.record) -> float:
-    """Return the position of the setpoint after the ``pending`` command has taken effect."""
-    return float((pending if int(pending.kinds) & HAS_SETPOINT else reu.setpoint).position)
-
-
-def gain_after(name: str, pending: np.record, reu: np.record) -> float:
-    """Return a gain of `GAINS` after the ``pending`` command has taken effect."""
-    gain = GAINS[name]
-    is_new = int(pending.kinds) & WITH_GAINS and not np.isnan(pending[gain])
-    return float((pending if is_new else reu.setpoint)[gain])

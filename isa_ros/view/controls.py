@@ -18,7 +18,7 @@ from isa_ros.actuator.tunable import GAINS, tunables
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.controller import Setpoint
 from isa_ros.core.changeable import Changeable
-from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
+from isa_ros.core.device import IMPEDANCE, MODES, REFERENCES
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI, MPA
@@ -39,6 +39,8 @@ _SHOWN = {'m': ('mm', MILLI), 'rad': ('deg', float(np.radians(1.0))), 'A': ('mA'
 """Unit of a slider, and what it is in SI, by unit of the setpoint."""
 _GAIN_RANGE = 4.0
 """Largest value of a gain's slider over the value at the start."""
+_MOTION = ('position', 'effort')
+"""Fields of a setpoint that take effect together."""
 _STEPS = 1000
 """Of a slider: so far its ends are within bounds that a value must not reach."""
 _ENDLESS = math.tau     # rad, either way, of the slider of a motor
@@ -69,14 +71,15 @@ class Controls:
         self._lines = [
             name for name in surroundings.changing if name.startswith(f'{EMERGENCY_STOP}.')]
         self._starts = dict(zip(self._actuators, surroundings.starts()['position'].tolist()))
-        self._held: dict[str, dict[str, float]] = {}
+        self._sliders = {name: (own.mode, [*self._setpoints(own)])
+                         for name, own in self._actuators.items()}
 
     def tree(self) -> Mapping[str, Any]:
         """Return what a page may change, for JSON."""
         return {
             'actuators': [{
                 'name': name, 'mode': MODES[own.mode],
-                'setpoints': [slider._asdict() for slider in self._setpoints(own)],
+                'setpoints': [slider._asdict() for slider in self._sliders[name][1]],
                 'gains': [slider._asdict() for slider in _gains(own)],
                 'faults': self._faults.tree(name)} for name, own in self._actuators.items()],
             'supplies': [{'name': own.name, 'faults': self._faults.tree(own.name)}
@@ -84,13 +87,13 @@ class Controls:
             'requests': [*_REQUESTS], 'has_stop': bool(self._lines)}
 
     def state(self) -> Mapping[str, Any]:
-        """Return what is on: faults, and the emergency stop."""
+        """Return what is on: faults, the emergency stop, and the setpoints of all sliders."""
         return {'faults': self._faults.on, 'is_stopped': any(
-            self._surroundings.tuned_value(name) for name in self._lines)}
+            self._surroundings.tuned_value(name) for name in self._lines),
+            'setpoints': [self._in_force(own) for own in self._actuators.values()]}
 
     def restart(self) -> None:
-        """Forget what was ordered: the run begins at t = 0. Tuned gains stay."""
-        self._held.clear()
+        """Forget the faults: the run begins at t = 0. Tuned gains stay."""
         self._faults.restart()
 
     def carry_out(self, order: Order) -> str:
@@ -128,36 +131,46 @@ class Controls:
         fields = [name for name in NUMBERS[mode] if name != 'velocity']
         for field in (*fields, *(GAINS.values() if mode == IMPEDANCE else ())):
             bounds = own.get(field) or _rated(actuator)
-            value = self._starts[actuator.name] if field == 'position' else 0.0
-            for gain, name in GAINS.items():
-                if name == field:
-                    value = float(actuator.parameter(gain))
+            value = (self._starts[actuator.name] if field == 'position'
+                     else getattr(actuator.setpoint, field))
             yield _slider(field, bounds, value, _GAIN_RANGE if field in GAINS.values() else None)
 
     def _set(self, actuator: SmartActuator, field: str, value: float) -> str:
         """Send a setpoint in which one number is new; return what was limited, or the number."""
         if field in GAINS.values() or field in REFERENCES:
             setpoint = Setpoint(**{field: value})   # type: ignore[arg-type]
-        elif field in ('position', 'effort'):
-            held = self._held.setdefault(actuator.name, {})
-            setpoint = self._with_held(actuator, held | {field: value})
+        elif field in _MOTION:
+            setpoint = _with_others(actuator, field, value)
         else:
-            known = ['position', 'effort', *GAINS.values(), *REFERENCES]
+            known = [*_MOTION, *GAINS.values(), *REFERENCES]
             raise SetpointError(f'{actuator.name}: setpoint {field!r} is unknown; '
                                 f'{alternatives(field, known)}')
         command = _command(actuator, setpoint)
         refuse_without_effort(actuator.name, setpoint, actuator.mode)
-        limited = actuator.admit(command)
-        if field in ('position', 'effort'):
-            self._held[actuator.name][field] = value
-        return limited or f'{actuator.name}: {field} = {value:g}'
+        return actuator.admit(command) or f'{actuator.name}: {field} = {value:g}'
 
-    def _with_held(self, actuator: SmartActuator, held: Mapping[str, float]) -> Setpoint:
-        """Return a setpoint with what was set before; where nothing was, what is in force."""
-        if actuator.mode not in (POSITION, IMPEDANCE):
-            return Setpoint(effort=held.get('effort'), position=held.get('position'))
-        position = held.get('position', float(actuator.sample.position_reference))
-        return Setpoint(position=position, effort=held.get('effort'))
+    def _in_force(self, actuator: SmartActuator) -> list[float | None] | None:
+        """Return the values of its setpoint's sliders; None in another mode than at the start."""
+        mode, sliders = self._sliders[actuator.name]
+        if actuator.mode != mode:
+            return None
+        values = actuator.setpoint._asdict()
+        numbers = ((values.get(own.name, values['reference']), own.scale) for own in sliders)
+        return [None if value is None else value / scale for value, scale in numbers]
+
+
+def _with_others(actuator: SmartActuator, field: str, value: float) -> Setpoint:
+    """
+    Return a setpoint with one new number; the other that its mode uses stays in force.
+
+    One that was taken over may be a little beyond its range, as a position at an end stop.
+    """
+    used, bounds = NUMBERS.get(actuator.mode, ()), actuator.setpoint_range.bounds
+    own = actuator.setpoint._asdict()
+    others = {name: own[name] if name not in bounds else
+              min(max(own[name], bounds[name].low), bounds[name].high)
+              for name in _MOTION if name in used}
+    return Setpoint(**{**others, field: value})
 
 
 def _rated(actuator: SmartActuator) -> Bounds:

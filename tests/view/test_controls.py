@@ -54,7 +54,8 @@ def test_both_ends_of_every_slider_are_accepted(config):
             for is_on in (True, False):
                 rig.order('fault', target['name'], fault['name'], is_on)
             assert fault['meaning']
-    assert rig.controls.state() == {'faults': [], 'is_stopped': False}
+    state = rig.controls.state()
+    assert (state['faults'], state['is_stopped']) == ([], False)
 
 
 def test_sliders_have_the_units_and_the_range_of_their_actuator():
@@ -98,8 +99,8 @@ def test_a_force_loop_alone_takes_efforts_up_to_the_rated_force():
     assert rig.tick().applied.effort == 321.0
 
 
-def test_a_setpoint_keeps_what_was_set_before():
-    """And without that the reference in force."""
+def test_a_setpoint_keeps_what_is_in_force():
+    """Set before, or without that the reference at rest."""
     rig = Rig('rig_linear')
     rig.order('setpoint', 'ram', 'effort', 60.0)
     applied = rig.tick().applied
@@ -112,9 +113,55 @@ def test_a_setpoint_keeps_what_was_set_before():
     rig.order('setpoint', 'ram', 'effort', 61.0)
     applied = rig.tick().applied
     assert (applied.effort, applied.position) == (61.0, 0.033)
+    rig.group.start(rig.surroundings.starts())
     rig.controls.restart()
     rig.order('setpoint', 'ram', 'position', 0.04)
     assert rig.tick().applied.effort == 0.0
+
+
+def test_the_force_that_was_taken_over_is_shown_and_stays():
+    """
+    A load of 800 N on an actuator that is enabled at rest, though no command gave it an effort.
+
+    The load cell's converter has steps of 5 N.
+    """
+    rig = Rig('rig_linear', changes={'actuators.ram.load.force': -800.0})
+    position, effort, stiffness, damping = (own['name'] for own in rig.tree[
+        'actuators'][0]['setpoints'])
+    assert (position, effort, stiffness, damping) == (
+        'position', 'effort', 'stiffness', 'damping')
+    ram = rig.tick()
+    (place, borne, k, d), = rig.controls.state()['setpoints']
+    assert abs(borne) == pytest.approx(800.0, abs=5.0)
+    assert place == pytest.approx(50.0, abs=0.1) and (k, d) == (
+        ram.setpoint.stiffness, ram.setpoint.damping)
+    rig.order('setpoint', 'ram', 'position', 0.051)
+    assert rig.controls.state()['setpoints'][0] == pytest.approx(
+        [51.0, borne, k, d], rel=1e-9)     # before its tick
+    applied = rig.tick().applied
+    assert (applied.effort, applied.position) == (borne, 0.051)
+    assert rig.sliders()['effort']['value'] == 0.0      # at the start none was taken over
+
+
+def test_the_sliders_of_another_mode_show_nothing():
+    rig = Rig('rig_servo_valve')
+    assert rig.controls.state()['setpoints'][0] == [None]      # the effort of the start counts
+    rig.order('setpoint', rig.tree['actuators'][0]['name'], 'spool', 1e-4)
+    assert rig.controls.state()['setpoints'][0] == [pytest.approx(0.1, rel=1e-9)]
+    rig.tick()
+    assert rig.controls.state()['setpoints'][0] == [pytest.approx(0.1, rel=1e-9)]
+    rig.group.actuators[0].change_mode('current')
+    assert rig.controls.state()['setpoints'][0] is None
+
+
+def test_a_place_that_was_taken_over_beyond_the_stroke_is_no_refusal():
+    """An end stop yields: the effort can be moved all the same."""
+    rig = Rig('rig_linear')
+    rig.tick()
+    rig.group.actuators[0].memory.reu['setpoint']['position'] = -1e-5
+    rig.order('setpoint', 'ram', 'effort', 50.0)
+    applied = rig.tick().applied
+    assert (applied.position, applied.effort) == (0.0, 50.0)
 
 
 def test_a_refused_number_is_not_kept():

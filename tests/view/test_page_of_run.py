@@ -50,6 +50,33 @@ def test_a_slider_changes_the_run_and_is_in_the_bag(browser, tmp_path):
     assert replay(Bag(tmp_path / 'bag')).is_equal
 
 
+def test_sliders_show_what_is_in_force(browser, tmp_path):
+    """The force that the actuator took over, and the number of another page; not a moved one."""
+    with lived(tmp_path / 'bag', is_paused=True, config=find('leg', CONFIG)) as (url, _):
+        browser.visit(url)
+        choose(browser, 'source', 2)
+        value = ("const own = document.querySelector('input[data-name=effort]');"
+                 "return parseFloat(own.parentElement.querySelector('output').textContent)")
+        assert browser.run(value) == 0.0
+        for _ in range(3):
+            click(browser, 'step')
+        browser.wait(f'{CLOCK} === 0.003')
+        browser.wait(value.replace('return ', 'return Math.abs(') + ') > 20')
+        knob = browser.run("return +document.querySelector('input[data-name=effort]').value")
+        browser.run("order('setpoint', { of: 'kfe', name: 'effort', value: -1000 })")
+        browser.wait(f'{value} === -1000')
+        assert browser.run(
+            "return +document.querySelector('input[data-name=effort]').value") < knob
+        browser.run("""
+            const own = document.querySelector('input[data-name=effort]');
+            own.value = 1000;
+            own.dispatchEvent(new Event('input'))""")
+        browser.wait("return document.getElementById('note').textContent.startsWith("
+                     "'kfe: effort = ')")
+        assert browser.run(value) > 5000.0
+        assert browser.log() == []
+
+
 def test_a_page_that_is_closed_changes_nothing(browser, tmp_path):
     """The run goes on to its end, and its bag is that of a run without a page."""
     with lived(tmp_path / 'own' / 'bag', duration_s=0.8) as (url, join):

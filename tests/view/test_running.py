@@ -141,6 +141,19 @@ def test_a_setpoint_takes_effect_at_the_next_tick_and_is_in_the_bag(tmp_path):
     assert replay(lived.bag).is_equal
 
 
+def test_frames_have_the_setpoint_that_is_in_force(tmp_path):
+    """Of a leg that stands: no command gave the effort that bears it, and a slider keeps it."""
+    lived = Lived(tmp_path / 'bag', {20: [setpoint('position', 0.04, of='kfe')]}, config='leg')
+    borne = lived.frames[4]['setpoints'][2][1]
+    place, effort, *_ = lived.frames[-1]['setpoints'][2]
+    assert abs(borne) > 20.0 and effort == borne and place == pytest.approx(40.0, abs=1e-9)
+    result = isa_ros.read(lived.bag.path)
+    last = result.log.applied[21][2]
+    assert (last['effort'], last['position']) == (borne, 0.04)
+    assert result.log.applied[0][2]['effort'] == 0.0     # what the recorded message has, as ever
+    assert replay(lived.bag).is_equal
+
+
 def test_gains_faults_requests_and_stops_are_in_the_bag(tmp_path):
     """Each at the tick after the order; what is on is told to all pages; the bag replays."""
     lived = Lived(tmp_path / 'bag', {

@@ -1,11 +1,13 @@
 'use strict';
 // What a page may change of a run: requests, setpoints, gains and faults of the chosen actuator.
 
+const ANSWER_MS = 500;    // after which an order is in force, or refused
+
 const worded = name => name.replace(/_/g, ' ');
 
 class Panel {
   constructor(host, controls, title) {
-    Object.assign(this, { host, controls, faults: [] });
+    Object.assign(this, { host, controls, faults: [], setpoints: [] });
     host.hidden = false;
     this.stop = controls.has_stop ? element(host, 'button', 'stop', 'emergency stop') : null;
     this.own = element(host, 'section');
@@ -23,6 +25,7 @@ class Panel {
     this.own.replaceChildren();
     this.faults = [...this.shared];
     this.state = null;
+    this.setpoints = [];
     this.row = this.controls.actuators.findIndex(actuator => actuator.name === name);
     const actuator = this.controls.actuators[this.row];
     if (!actuator) return;
@@ -34,7 +37,8 @@ class Panel {
         'click', () => order('request', { of: name, name: request }));
     }
     element(this.own, 'h2', '', 'Setpoint');
-    for (const slider of actuator.setpoints) this.addSlider(this.own, 'setpoint', name, slider);
+    this.setpoints = actuator.setpoints.map(
+      slider => this.addSlider(this.own, 'setpoint', name, slider));
     const gains = element(this.own, 'details');
     element(gains, 'summary', '', 'Gains and limits');
     for (const slider of actuator.gains) this.addSlider(gains, 'tune', name, slider);
@@ -47,13 +51,25 @@ class Panel {
     const input = element(label, 'input');
     Object.assign(input, { type: 'range', min: 0, max: 1000, step: 1 });
     input.dataset.name = slider.name;
-    input.value = 1000 * (slider.value - slider.low) / (slider.high - slider.low);
+    const show = value => {
+      slider.value = value;
+      output.textContent = shown(value);
+      input.value = 1000 * (value - slider.low) / (slider.high - slider.low);
+    };
+    show(slider.value);
+    let moved = -Infinity;
     const send = sending(value => order(what, { of, name: slider.name, value: value * slider.scale }));
     input.addEventListener('input', () => {
       slider.value = slider.low + (slider.high - slider.low) * input.value / 1000;
       output.textContent = shown(slider.value);
+      moved = performance.now();
       send(slider.value);
     });
+    // Follows what is in force, but not under the hand that moves it, nor before its answer.
+    return value => {
+      const isHeld = input.matches(':active') || performance.now() - moved < ANSWER_MS;
+      if (value !== null && !isHeld) show(value);
+    };
   }
 
   addFaults(parent, target, title) {
@@ -72,6 +88,8 @@ class Panel {
 
   update(frame) {
     if (this.state) this.state.textContent = frame.devices[this.row];
+    const inForce = this.setpoints.length ? frame.setpoints[this.row] : null;
+    if (inForce) this.setpoints.forEach((follow, k) => follow(inForce[k]));
     for (const { button, of, name } of this.faults) {
       const isOn = frame.faults.some(own => own[0] === of && own[1] === name);
       button.classList.toggle('on', isOn);
