@@ -134,6 +134,26 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     return command
 
 
+def applied_kinds(data: bytes, name: str) -> int:
+    """
+    Return what changed in a recorded applied setpoint: bits of `HAS_*`, and `WAS_REFUSED`.
+
+    Raises
+    ------
+    SetpointError
+        The message is not an applied setpoint of ``name``, or says not what changed.
+    CdrError
+        The bytes are not a JointState.
+
+    """
+    message = decode(data, JointState)
+    names = applied_names(name)
+    if list(message.name) != names or len(message.position) != len(names):
+        raise SetpointError(
+            f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
+    return _whole(f'{name}/changed', message.position[-1], EVERY_KIND | WAS_REFUSED)
+
+
 def sent_to_command(data: bytes, name: str) -> np.void:
     """
     Return the COMMAND row of a recorded sent setpoint; inverse of `applied_setpoint`.

@@ -26,25 +26,39 @@ TRIP, WARNING, STATE = 'trip', 'warning', 'state'
 CHANGE, REFUSED, CAVITY, OVERPRESSURE = 'change', 'refused', 'cavity', 'overpressure'
 PAGE = 'by the page, '
 """Begins the lines about setpoints of a page, ACTUATOR: TEXT."""
-SMALL = 1e-9
-"""Cavities below it, m3, are not told of: 1 mm3."""
 PROOF = 1.5
 """Pressure of a cylinder's proof test over its rated one, assumed; less is no event."""
 _DIGITS = 4
 _GAP = 2        # ticks between two values of a waveform: at an extreme two are equal
-_COUNTS = ('unused_setpoints', 'refused_requests')
+SMALL = 1e-9
+"""Cavities below it, m3, are not told of: 1 mm3."""
+SETPOINTS, REQUESTS, LARGEST_CAVITY = 'unused_setpoints', 'refused_requests', 'largest_cavity'
+NONE = {SETPOINTS: 0.0, REQUESTS: 0.0, LARGEST_CAVITY: SMALL}
+"""Fields of a `SAMPLE` that grow, and the values up to which there is nothing to tell."""
+_COUNTS = (SETPOINTS, REQUESTS)
 
 
 class Event(NamedTuple):
     """Something that happened."""
 
     t_s: float
-    """When: by the device's own time; of a count or cavity, of the first sample that has it."""
+    """
+    When: by the device's own time; of a count or cavity, of the first sample that has it.
+
+    Where a bag does not say which sample that is, of the last that may be, and `what` says so.
+    """
     source: str
     """The actuator, or the supply."""
     kind: str
     """`TRIP`, `WARNING`, `STATE`, `CHANGE`, `REFUSED`, `CAVITY` or `OVERPRESSURE`."""
     what: str
+
+
+class Begin(NamedTuple):
+    """The samples, by their ticks, of which one is the first with a count or cavity."""
+
+    first: int
+    last: int
 
 
 class History(NamedTuple):
@@ -62,6 +76,8 @@ class History(NamedTuple):
     """Of the actuators with cushions, by row."""
     events: Mapping[int, Sequence[str]] = {}
     """Texts of the run's own events, by the tick before which they happened."""
+    begins: Mapping[tuple[int, str], Begin] = {}
+    """Where counts and cavities began, by row and field: those that ``ticks`` have too late."""
 
 
 class Trapped(NamedTuple):
@@ -86,7 +102,9 @@ def events_in(run: RunConfig, history: History) -> list[Event]:
         for row, actuator in enumerate(run.actuators):
             samples = history.samples[:, row]
             found += _of_device(actuator.name, samples)
-            found += _of_counts(actuator.name, samples, history.ticks, run.step_ns)
+            begins = {field: _begin(history, row, field) for field in NONE}
+            found += _of_counts(actuator.name, samples[-1:], begins, run.step_ns)
+            found += _of_cavity(actuator.name, samples, begins[LARGEST_CAVITY], run.step_ns)
     for row, trapped in history.cushions.items():
         found += _of_cushion(run.actuators[row], trapped, run.step_ns)
     return sorted(found, key=lambda own: round(own.t_s * NS_PER_SECOND))
@@ -118,22 +136,38 @@ def _of_device(name: str, samples: Records) -> Iterator[Event]:
                 t_s, name, STATE, f'{state_name(now["device_state"])}: {reason_of(now)}')
 
 
-def _of_counts(
-        name: str, samples: Records, ticks: Sequence[int], step_ns: int) -> Iterator[Event]:
-    """Yield an event for each count that is not 0 at the end, and for the largest cavity."""
-    last = samples[-1:].copy()
+def _begin(history: History, row: int, field: str) -> Begin:
+    """Return where a count or cavity of an actuator began, if it did."""
+    tick = _first(history.samples[:, row][field] > NONE[field], history.ticks)
+    return history.begins.get((row, field), Begin(tick, tick))
+
+
+def _of_counts(name: str, last: Records, begins: Mapping[str, Begin], step_ns: int
+               ) -> Iterator[Event]:
+    """Yield an event for each count that is not 0 in the last `SAMPLE`, (1,)."""
     for field in _COUNTS:
         alone = last.copy()
         for other in _COUNTS:
             if other != field:
                 alone[other] = 0.0
         for line in counts_of([name], alone):
-            yield Event(_since(samples[field] > 0.0, ticks, step_ns), name, REFUSED,
-                        line.partition(': ')[2])
-    largest = float(np.nanmax(samples['largest_cavity']))
-    if largest > SMALL:
-        yield Event(_since(samples['largest_cavity'] > SMALL, ticks, step_ns), name, CAVITY,
-                    f'vapour in a chamber, at most {digits(largest / MILLILITRE, _DIGITS)} ml')
+            yield _begun(begins[field], name, REFUSED, line.partition(': ')[2], step_ns)
+
+
+def _of_cavity(name: str, samples: Records, begin: Begin, step_ns: int) -> Iterator[Event]:
+    """Yield an event for the largest cavity, its `SAMPLE` (n,)."""
+    largest = float(np.nanmax(samples[LARGEST_CAVITY]))
+    if largest > NONE[LARGEST_CAVITY]:
+        what = f'vapour in a chamber, at most {digits(largest / MILLILITRE, _DIGITS)} ml'
+        yield _begun(begin, name, CAVITY, what, step_ns)
+
+
+def _begun(begin: Begin, source: str, kind: str, what: str, step_ns: int) -> Event:
+    """Return an event at its begin; with both bounds in words where that is not known."""
+    first, last = (tick * step_ns / NS_PER_SECOND for tick in begin)
+    if first < last:
+        what += f', begun between t = {first:.6f} s and t = {last:.6f} s'
+    return Event(last, source, kind, what)
 
 
 def _of_cushion(actuator: ActuatorConfig, trapped: Trapped, step_ns: int) -> Iterator[Event]:
@@ -142,14 +176,15 @@ def _of_cushion(actuator: ActuatorConfig, trapped: Trapped, step_ns: int) -> Ite
     most = float(np.max(trapped.pressures, initial=0.0))
     if most > proof:
         yield Event(
-            _since(trapped.pressures > proof, trapped.ticks, step_ns), actuator.name, OVERPRESSURE,
+            _first(trapped.pressures > proof, trapped.ticks) * step_ns / NS_PER_SECOND,
+            actuator.name, OVERPRESSURE,
             f'behind the spear of a cushion, at most {digits(most / MPA, _DIGITS)} MPa, more than '
             f'{digits(proof / MPA, _DIGITS)} MPa, {PROOF:g} times plant.drive.rated_pressure_mpa')
 
 
-def _since(holds: np.ndarray, ticks: Sequence[int], step_ns: int) -> float:
-    """Return the time of the first sample for which something holds, s."""
-    return ticks[int(np.argmax(holds))] * step_ns / NS_PER_SECOND
+def _first(holds: np.ndarray, ticks: Sequence[int]) -> int:
+    """Return the tick of the first sample for which something holds."""
+    return ticks[int(np.argmax(holds))]
 
 
 def _changes(run: RunConfig, history: History) -> Iterator[Event]:

@@ -13,6 +13,7 @@ from isa_ros.core.accounts import CHAMBERS
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import BagError, SetpointError
+from isa_ros.run.begins import begins_of
 from isa_ros.run.diagnostics import ENERGY
 from isa_ros.run.events import History, Trapped
 from msg_adapters import device, diagnostics, event
@@ -81,10 +82,11 @@ def history_of(bag: Bag, run: RunConfig) -> History:
         else:
             ticks.append(message.sequence)
             rows.append(now.copy())
+    samples = np.array(rows, SAMPLE).reshape(-1, len(names))
     return History(
-        ticks, np.array(rows, SAMPLE).reshape(-1, len(names)), tuned, supplies,
+        ticks, samples, tuned, supplies,
         {row: Trapped(list(own), np.array(list(own.values()))) for row, own in trapped.items()},
-        events)
+        events, begins_of(bag, run, ticks, samples))
 
 
 def _read(message: BagMessage, topics: _Topics, names: list[str], now: np.ndarray) -> bool:

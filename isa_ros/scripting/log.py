@@ -37,6 +37,8 @@ class Log(NamedTuple):
     """Those of the supplies, by sample and SUPPLY.KEY."""
     events: Mapping[int, Sequence[str]] = {}
     """Texts of the run's events by sample: refused requests of controllers."""
+    begins: Mapping[tuple[int, str], tuple[int, int]] = {}
+    """Of a bag, by row and field of a count: its first sample is between these two."""
 
 
 class _Kept(NamedTuple):

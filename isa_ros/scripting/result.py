@@ -141,7 +141,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         Trips, warnings, states, refusals, cavities, and faults and other changes of parameters;
         those of the bag of the run are the same.
         """
-        from isa_ros.run.events import events_in, History, Trapped  # import messages
+        from isa_ros.run.events import Begin, events_in, History, Trapped  # import messages
         log, run = self.log, self.scenario.run
         cushions = {}
         for row, own in enumerate(run.actuators):
@@ -151,7 +151,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
                 cushions[row] = Trapped(there.tolist(), trapped[there])
         return events_in(run, History(
             self._with_device.tolist(), log.samples[self._with_device], log.tuned,
-            log.tuned_supplies, cushions, log.events))
+            log.tuned_supplies, cushions, log.events,
+            {place: Begin(*begin) for place, begin in log.begins.items()}))
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""

@@ -3,11 +3,11 @@
 import math
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.core.signals import COMMAND, EVERY_KIND, HAS_REFERENCE, HAS_SETPOINT
+from isa_ros.core.signals import COMMAND, EVERY_KIND, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
-from msg_adapters.setpoint import applied_to_command, msg_to_command
+from msg_adapters.setpoint import applied_kinds, applied_to_command, msg_to_command
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
@@ -154,3 +154,19 @@ def test_numbers_of_an_applied_setpoint_are_whole_and_known(entry, value, messag
     found.position[entry] = value
     with pytest.raises(SetpointError, match=message):
         applied_to_command(encode(found), 'hip')
+
+
+@given(kinds=st.integers(0, EVERY_KIND | WAS_REFUSED))
+@settings(deadline=None)
+def test_what_changed_is_read_with_whether_it_was_refused(kinds):
+    assert applied_kinds(applied_setpoint('hip', command(kinds=kinds), 0), 'hip') == kinds
+
+
+def test_what_changed_in_a_message_that_does_not_say_it_is_refused():
+    """Of another actuator, or as bags had it before there were modes."""
+    with pytest.raises(SetpointError, match='hip: applied setpoint names knee'):
+        applied_kinds(applied_setpoint('knee', command(), 0), 'hip')
+    found = decode(applied_setpoint('hip', command(), 0), JointState)
+    found.name, found.position = found.name[:4], found.position[:4]
+    with pytest.raises(SetpointError, match='hip: applied setpoint names hip, '):
+        applied_kinds(encode(found), 'hip')

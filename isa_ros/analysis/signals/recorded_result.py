@@ -61,7 +61,7 @@ def read(bag: str | Path) -> Result:
         applied.setdefault(tick, np.zeros(len(run.actuators), command.dtype))[row] = command
     log = log._replace(
         applied=applied, tuned=history.tuned, tuned_supplies=history.tuned_supplies,
-        events=history.events,
+        events=history.events, begins=history.begins,
         observed=log.samples if run.linked else None)
     scenario, problem = _scenario(opened, signals)
     return Result(
