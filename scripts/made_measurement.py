@@ -26,20 +26,35 @@ def wanted(t: float) -> float:
     return 0.05 + 0.01 * math.sin(2.0 * math.pi * (0.5 + 0.6875 * t) * t)
 
 
+def wanted_speed(t: float) -> float:
+    """Return the slope of `wanted`, m/s."""
+    return 0.01 * 2.0 * math.pi * (0.5 + 2.0 * 0.6875 * t) * math.cos(
+        2.0 * math.pi * (0.5 + 0.6875 * t) * t)
+
+
 class PositionSweep(Controller):
-    """Commands the position alone."""
+    """Commands the position, alone or with its velocity."""
+
+    def __init__(self, has_velocity: bool = False) -> None:
+        self._has_velocity = has_velocity
 
     def step(self, state: State) -> dict[str, Setpoint]:
         """Return the setpoint of the next tick."""
-        return {'ram': Setpoint(position=wanted((state.t_ns + 1_000_000) * 1e-9))}
+        t = (state.t_ns + 1_000_000) * 1e-9
+        return {'ram': Setpoint(
+            position=wanted(t), velocity=wanted_speed(t) if self._has_velocity else None)}
 
 
 def measured(
         directory: Path, duration: float, changes: Mapping[str, float], *, noise: float = 1.0,
-        clock_ppm: float = CLOCK_PPM,
-        machine: str | Mapping[str, Any] = 'rig_linear') -> tuple[Path, Path]:
-    """Return a CSV file of a machine with ``changes``, and its mapping; seed 5 of the noise."""
-    result = isa_ros.load(machine, changes=changes).simulate(duration, [PositionSweep()])
+        clock_ppm: float = CLOCK_PPM, machine: str | Mapping[str, Any] = 'rig_linear',
+        has_velocity: bool = False) -> tuple[Path, Path]:
+    """
+    Return a CSV file of a machine with ``changes``, and its mapping; seed 5 of the noise.
+
+    ``has_velocity``: it was commanded with the velocity too, which the file does not have.
+    """
+    result = isa_ros.load(machine, changes=changes).simulate(duration, [PositionSweep(has_velocity)])
     random = np.random.default_rng(5)
     t = result.time
     columns = [1e3 * t, [1e3 * wanted(own) for own in t]]

@@ -9,7 +9,7 @@ from isa_ros.analysis.measured.closing import (
 from isa_ros.analysis.measured.fit import Fit, fit
 from isa_ros.analysis.measured.mapping import load_mapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
-from isa_ros.analysis.measured.playback import LONGEST_S, played, prepared
+from isa_ros.analysis.measured.playback import LONGEST_S, played, prepared, remark
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.core.units import MILLI, of_coordinate
@@ -54,7 +54,7 @@ def against(
     Return a measurement beside a simulation with its commands.
 
     ``free`` are keys as `free_of` has them, none for the usual ones, or the word `NONE`. ``begun``
-    is told once what is compared, before it is simulated.
+    is told what is compared, and what of the mapping makes the simulation late, before it begins.
 
     Raises
     ------
@@ -71,6 +71,8 @@ def against(
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
     begun(_what(measurement, time))
+    if late := remark(run, name, measurement):
+        begun(late)
     simulated = played(run, name, measurement, time)
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
     found = closed(run, name, measurement, keys, time, progress) if keys else []

@@ -7,6 +7,7 @@ The mapping file: which column or topic and field of a measurement is which quan
     clock_ppm: 40.0                 # by which the clock of the measurement is fast
     signals:
       position_command: {column: setpoint, unit: mm}
+      velocity_command: {from: position_command}      # its slope
       position: {topic: /press/state, field: 'position[0]', unit: mm, sign: -1, offset: 150.0}
       pressure_a: {column: 4, unit: bar, scale: 0.061, delay_ms: 2.0}
 
@@ -24,6 +25,10 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 
+PLACE, VELOCITY = 'position_command', 'velocity_command'
+_FROM = 'from'
+SLOPE = f'{{{_FROM}: {PLACE}}}'
+"""What says that the commanded velocity is the slope of the commanded position."""
 _ROTARY_UNITS = ('rad', 'deg', 'rad/s', 'Nm')
 _TOP = ('actuator', 'time', 'skip_lines', 'clock_ppm', 'signals')
 _LARGEST_PPM = 1e5    # an oscillator is within 100 ppm, the clock of a script within some %
@@ -67,6 +72,8 @@ class MeasurementMapping(NamedTuple):
     """Relative error of the clock: 4e-5 for one that is 40 ppm fast."""
     signals: Mapping[str, MappedSignal]
     """By quantity."""
+    has_slope: bool = False
+    """Whether the commanded velocity is the slope of the commanded position."""
 
     @property
     def is_rotary(self) -> bool:
@@ -102,6 +109,7 @@ def load_mapping(path: Path) -> MeasurementMapping:
     signals = _section(tree, 'signals', name)
     if not signals:
         raise ConfigError(f'{name}: lacks signals, by quantity: {", ".join(QUANTITIES)}')
+    has_slope = _has_slope(signals, f'{name}: signals')
     clock_ppm = _number(tree, 'clock_ppm', name, 0.0)
     if abs(clock_ppm) > _LARGEST_PPM:
         raise ConfigError(f'{name}: clock_ppm = {clock_ppm:g}, must be -{_LARGEST_PPM:g} to '
@@ -112,7 +120,20 @@ def load_mapping(path: Path) -> MeasurementMapping:
         _column(time, f'{name}: time'),
         UNITS[unit].scale if unit != 's' else 1.0, rate or None, skipped,
         clock_ppm * 1e-6,
-        {quantity: _signal(signals, quantity, f'{name}: signals') for quantity in signals})
+        {quantity: _signal(signals, quantity, f'{name}: signals') for quantity in signals
+         if not (has_slope and quantity == VELOCITY)}, has_slope)
+
+
+def _has_slope(signals: Mapping[str, Any], where: str) -> bool:
+    """Return whether the commanded velocity is to be made from the commanded position."""
+    own = signals.get(VELOCITY)
+    if not isinstance(own, dict) or _FROM not in own:
+        return False
+    if own != {_FROM: PLACE}:
+        raise ConfigError(f'{where}.{VELOCITY}: must be {SLOPE} without other keys, or a signal')
+    if PLACE not in signals:
+        raise ConfigError(f'{where}.{VELOCITY}: {_FROM} = {PLACE}, which is not mapped')
+    return True
 
 
 def _signal(signals: Mapping[str, Any], quantity: str, where: str) -> MappedSignal:

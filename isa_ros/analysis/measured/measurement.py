@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from isa_ros.analysis.measured.bag_file import is_bag, read_fields
 from isa_ros.analysis.measured.csv_file import Floats, read_columns
-from isa_ros.analysis.measured.mapping import MappedSignal, MeasurementMapping
+from isa_ros.analysis.measured.mapping import (
+    MappedSignal, MeasurementMapping, PLACE, VELOCITY)
 from isa_ros.analysis.measured.quantities import QUANTITIES, scale_of
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.errors import BagError, ConfigError
@@ -60,9 +61,18 @@ def read_measurement(path: Path, mapping: MeasurementMapping, is_rotary: bool) -
                            f'{values[k]:g}, must be finite')
         found[name] = Signal(
             _risen((t - own.delay) / (1.0 + mapping.clock), f'{path}: {name}'), values)
+    if mapping.has_slope:
+        found[VELOCITY] = _slope(found[PLACE], f'{path}: {PLACE}')
     measurement = Measurement(path.name, found)
     _refuse_gaps(path, measurement)
     return measurement
+
+
+def _slope(own: Signal, where: str) -> Signal:
+    """Return the slope of a signal at its samples, from one neighbour to the other."""
+    if len(own.t) < 2:
+        raise BagError(f'{where}: has one sample, must have two for a slope')
+    return Signal(own.t, np.gradient(own.values, own.t))
 
 
 def _risen(t: Floats, where: str) -> Floats:

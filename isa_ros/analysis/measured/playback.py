@@ -5,6 +5,7 @@ import math
 from typing import Any
 import warnings
 
+from isa_ros.analysis.measured.mapping import PLACE, SLOPE, VELOCITY
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
@@ -12,10 +13,13 @@ from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.reu.block import Pid
+from isa_ros.reu.impedance import Impedance
 from isa_ros.scripting.run import Run
+from isa_ros.text.table import digits
 import numpy as np
 
-_MOTION = frozenset(('position_command', 'velocity_command', 'force_command'))
+_MOTION = frozenset((PLACE, VELOCITY, 'force_command'))
 """Commands of an impedance, or of a position loop, in whichever mode the actuator is."""
 
 _ROUNDING = 1e-6    # s: times of a file have been rounded
@@ -51,12 +55,12 @@ def prepared(run: Run, name: str, measurement: Measurement) -> Run:
     """
     commands = sorted(measurement.commands)
     own = run.configuration.actuator(name)
-    is_motion = 'position_command' in commands and _MOTION.issuperset(commands)
+    is_motion = PLACE in commands and _MOTION.issuperset(commands)
     if not commands:
         raise ConfigError(
             f'{measurement.name}: has no command, so there is nothing to simulate; map one of '
             f'{", ".join(key for key in QUANTITIES if QUANTITIES[key].mode)}')
-    if not is_motion and (len(commands) > 1 or commands == ['velocity_command']):
+    if not is_motion and (len(commands) > 1 or commands == [VELOCITY]):
         raise ConfigError(
             f'{measurement.name}: has {" and ".join(commands)}, must have one command, or '
             'velocity_command and force_command beside position_command')
@@ -69,6 +73,22 @@ def prepared(run: Run, name: str, measurement: Measurement) -> Run:
         changes[f'actuators.{name}.initial_position_{unit}'] = float(
             measurement.outputs['position'].values[0]) / scale
     return run.replace(changes)
+
+
+def remark(run: Run, name: str, measurement: Measurement) -> str:
+    """Return why the simulation will be late although its mapping can mend that; else ''."""
+    commands, own = measurement.commands, run.configuration.actuator(name).sheet.reu.position
+    if PLACE not in commands or VELOCITY in commands:
+        return ''
+    if isinstance(own, Impedance) and own.damping > 0.0 and own.stiffness > 0.0:
+        late = digits(own.damping / own.stiffness / MILLI, 3)
+        cause = (f'the damping of the impedance works against a command at rest, and the '
+                 f'simulation is late by damping over stiffness, {late} ms')
+    elif isinstance(own, Pid) and own.kv != 0.0:
+        cause = 'the feed-forward kv of the position loop has nothing to feed'
+    else:
+        return ''
+    return f'{name}: without {VELOCITY} {cause}; map it, or add to signals: {VELOCITY}: {SLOPE}'
 
 
 def played(run: Run, name: str, measurement: Measurement, duration: float) -> dict[str, Signal]:

@@ -75,6 +75,35 @@ def test_a_mistake_is_one_line_with_its_place(
     assert expected in str(refused.value)
 
 
+SLOPE = """
+signals:
+  position_command: {column: 1, unit: mm}
+  velocity_command: {from: position_command}
+"""
+
+
+def test_the_velocity_may_be_the_slope_of_the_position(tmp_path: Path) -> None:
+    own = mapping(tmp_path, SLOPE)
+    assert own.has_slope and [*own.signals] == ['position_command']
+    assert not mapping(tmp_path).has_slope
+
+
+@pytest.mark.parametrize('change, expected', [
+    (('from: position_command', 'from: position'), 'map.yaml: signals.velocity_command: must be '
+     '{from: position_command} without other keys, or a signal'),
+    (('from: position_command', 'from: position_command, unit: m'), 'must be {from: position_com'),
+    (('  position_command: {column: 1, unit: mm}\n', ''),
+     'map.yaml: signals.velocity_command: from = position_command, which is not mapped'),
+    (('{column: 1, unit: mm}', '{from: velocity_command}'),
+     'map.yaml: signals.position_command: from is unknown')])
+def test_nothing_else_is_made_from_another_signal(
+        tmp_path: Path, change: tuple[str, str], expected: str) -> None:
+    assert change[0] in SLOPE
+    with pytest.raises(ConfigError) as refused:
+        mapping(tmp_path, SLOPE.replace(*change))
+    assert expected in str(refused.value)
+
+
 def test_without_signals_the_quantities_are_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match='lacks signals, by quantity: position, velocity, '):
         mapping(tmp_path, 'skip_lines: 3\n')

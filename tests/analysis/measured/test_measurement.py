@@ -91,3 +91,30 @@ def test_an_output_has_no_gap_though_others_go_on() -> None:
         'force': Signal(np.array([0.0, 0.125, 0.25, 40.25]), np.ones(4))})
     with pytest.raises(BagError, match='data.csv: force: a gap of 40 s after t = 0.25 s, must be'):
         _refuse_gaps(Path('data.csv'), own)
+
+
+def sloped(tmp_path: Path, rows: str) -> Measurement:
+    """Return a measurement whose commanded velocity is the slope of its position, a fast clock."""
+    (tmp_path / 'data.csv').write_text('t,x,s\n' + rows)
+    (tmp_path / 'map.yaml').write_text(
+        'time: {column: t}\nclock_ppm: -100000\nsignals:\n  position: {column: x, unit: m}\n'
+        '  position_command: {column: s, unit: mm}\n'
+        '  velocity_command: {from: position_command}\n')
+    return read_measurement(tmp_path / 'data.csv', load_mapping(tmp_path / 'map.yaml'), False)
+
+
+def test_the_slope_is_that_of_the_parabola_through_a_sample_and_its_neighbours(
+        tmp_path: Path) -> None:
+    """
+    Of s = 1000 t^2 mm at 0, 1, 3 s it is 2 t m/s at 1 s, and at the ends of a straight line.
+
+    The clock is slow: 0.9 s were told for a second. SI, in time and place.
+    """
+    own = sloped(tmp_path, '0,0,0\n0.9,0,1000\n2.7,0,9000\n').signals['velocity_command']
+    assert own.t.tolist() == pytest.approx([0.0, 1.0, 3.0], abs=1e-12)
+    assert own.values.tolist() == pytest.approx([1.0, 2.0, 4.0], abs=1e-12)
+
+
+def test_one_sample_has_no_slope(tmp_path: Path) -> None:
+    with pytest.raises(BagError, match='position_command: has one sample, must have two for a'):
+        sloped(tmp_path, '0,0,0\n')
