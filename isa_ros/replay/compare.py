@@ -87,13 +87,17 @@ class Comparer:
             self._compare_block()
 
     def finish(self) -> RunDifference:
-        """Return the report; ticks left over in the bag are a difference."""
+        """
+        Return the report; ticks left over in the bag are a difference.
+
+        Its topics have the order of their first differences, behind whole ticks.
+        """
         while self._next is not None and (self.difference is None or self._is_to_end):
             self._miss_tick(self._next, 'tick', PRESENT, ABSENT)
             self._next = next(self._expected, None)
         self._compare_block()
-        found = [self._topics[name].difference for name in sorted(
-            self._topics, key=lambda name: (name != BAG, name))]
+        found = [own.difference for own in sorted(
+            self._topics.values(), key=lambda own: (own.topic != BAG, _order(own)))]
         return RunDifference(self._ticks, self._messages, self._end_ns, self.difference,
                              [difference for difference in found if difference is not None])
 
@@ -151,13 +155,20 @@ class Comparer:
         self._in_block = 0
         for topic in self._topics.values():
             topic.compare()
-        firsts = [topic.first for topic in self._topics.values() if topic.first is not None]
-        self.difference = min(firsts, key=_place, default=None)
+        differing = [topic for topic in self._topics.values() if topic.first is not None]
+        self.difference = min(differing, key=_order).first if differing else None
 
 
-def _place(difference: FirstDifference) -> tuple[int, bool, str]:
-    """Return the order of differences: by time, ticks before messages, topics by name."""
-    return difference.t_ns, difference.topic != BAG, difference.topic
+def _order(topic: TopicComparison) -> tuple[bool, int, bool, float, str]:
+    """
+    Return the order of topics by their first differences: by time, whole ticks before messages.
+
+    At equal times the one with the larger deviation is first. Diagnostics are last: they say in
+    words what other topics have as numbers. Those without a difference may be anywhere.
+    """
+    name, first = topic.topic, topic.first
+    return (name == diagnostics.TOPIC[0], 0 if first is None else first.t_ns, name != BAG,
+            -topic.proportion, name)
 
 
 def retyped(expected: Bag, types: Mapping[str, str]) -> list[FirstDifference]:

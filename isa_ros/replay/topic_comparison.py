@@ -110,6 +110,11 @@ class TopicComparison:
             self.topic, self._n_messages, self.first,
             None if largest is None else largest.deviation)
 
+    @property
+    def proportion(self) -> float:
+        """Return the largest deviation of a number in proportion to the values of its field."""
+        return max((worst.proportion for worst in self._worst.values()), default=0.0)
+
     def _compare_columns(
             self, messages: Sequence[BagMessage], others: Sequence[bytes], pairs: Pairs,
             compares_bytes: bool) -> None:

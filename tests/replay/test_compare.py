@@ -24,12 +24,13 @@ def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):
 
 
 def test_first_difference_names_tick_topic_field_and_both_values(bag):
+    """Of several at one tick the one that is farther off for its size."""
     found = difference(bag, produced(force=3.0, spool=4.0))
     assert found == FirstDifference(
-        7, 7 * STEP_NS, '/hip/joint_states', 'effort[0]', np.sin(0.7 + 2), 3.0)
+        7, 7 * STEP_NS, '/hip/valve', 'position[0]', np.sin(0.7 + 5), 4.0)
     assert str(found) == (
-        'tick 7 (t = 0.007000 s), /hip/joint_states, effort[0]: '
-        f'expected {float(np.sin(0.7 + 2))!r}, got 3.0')
+        'tick 7 (t = 0.007000 s), /hip/valve, position[0]: '
+        f'expected {float(np.sin(0.7 + 5))!r}, got 4.0')
 
 
 def test_difference_of_one_bit_counts(bag):
@@ -215,8 +216,8 @@ def test_the_first_difference_is_the_first_by_time_over_many_ticks(tmp_path):
     report = compare_bags(bag, other)
     assert (report.difference.tick, report.difference.topic) == (299, '/hip/valve')
     assert [(topic.topic, topic.n_messages) for topic in report.topics] == [
-        ('/hip/joint_states', 1), ('/hip/valve', 2)]
-    assert report.topics[1].largest.tick == 599
+        ('/hip/valve', 2), ('/hip/joint_states', 1)]
+    assert report.topics[0].largest.tick == 599
 
 
 def test_nothing_is_compared_after_the_first_difference_unless_asked(tmp_path):
@@ -233,3 +234,26 @@ def test_nothing_is_compared_after_the_first_difference_unless_asked(tmp_path):
     assert comparer.difference.tick == 10
     report = comparer.finish()
     assert report.difference == comparer.difference and report.ticks == tick + 1
+
+
+def test_topics_have_the_order_of_their_first_differences_and_the_larger_first(tmp_path):
+    """Of two that differ from one tick on, the one whose numbers are farther apart."""
+    bag, other = (Bag(record(tmp_path / name, N, changes)) for name, changes in (
+        ('one', {}), ('other', {3: {'spool': 9.0}, 2: {'position': 9.0}})))
+    assert [own.topic for own in compare_bags(bag, other).topics] == [
+        '/hip/joint_states', '/hip/valve']
+    least = Bag(record(tmp_path / 'least', N, {2: {'position': 1e-9, 'spool': 9.0}}))
+    assert [own.topic for own in compare_bags(bag, least).topics] == [
+        '/hip/valve', '/hip/joint_states']
+
+
+def test_diagnostics_are_told_of_last(bag):
+    """They say in words what follows of other topics, also where they differ at t = 0."""
+    comparer = Comparer(bag, NAMES, is_to_end=True)
+    comparer.note(FirstDifference(0, 0, '/diagnostics', 'status[0].message', 'a', 'b'))
+    comparer.note(FirstDifference(5, 5 * STEP_NS, '/hip/valve', 'position[0]', 1.0, 2.0))
+    for t_ns, k, messages in produced():
+        comparer.write_tick(t_ns, k, messages)
+    report = comparer.finish()
+    assert [own.topic for own in report.topics] == ['/hip/valve', '/diagnostics']
+    assert report.difference == report.topics[0].first

@@ -19,7 +19,7 @@ def test_every_topic_has_its_first_difference_and_its_largest_deviation(bag, tmp
         3: {'spool': 0.25}, 5: {'spool': 100.0, 'current': 1.0}, 9: {'position': 0.0}}))
     report = compare_bags(bag, other)
     topics = {topic.topic: topic for topic in report.topics}
-    assert list(topics) == ['/hip/joint_states', '/hip/valve']
+    assert list(topics) == ['/hip/valve', '/hip/joint_states']
     assert topics['/hip/joint_states'].n_messages == 1
     valve = topics['/hip/valve']
     assert (valve.n_messages, valve.first) == (2, report.difference)
