@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator
 import contextlib
+import threading
 import time
 from typing import Protocol, TextIO
 
 _TO_THE_LEFT, _CLEAR_THE_REST = '\r', '\033[K'
+PERIOD_S = 1.0      # between two times that a line shows
 
 
 class TerminalLine:
@@ -38,16 +40,42 @@ def terminal_line(stream: TextIO) -> TerminalLine | None:
 
 
 @contextlib.contextmanager
-def underway(stream: TextIO, text: str) -> Iterator[None]:
-    """Show what is done, for as long as it takes; nothing where ``stream`` is not a terminal."""
-    line = terminal_line(stream)
-    if line is not None:
-        line.show(text)
+def repeated(show: Callable[[], object], period_s: float = PERIOD_S) -> Iterator[None]:
+    """Call a function in every period of the context, from a thread of its own."""
+    ended = threading.Event()
+
+    def repeat() -> None:
+        while not ended.wait(period_s):
+            show()
+    thread = threading.Thread(target=repeat, daemon=True)
+    thread.start()
     try:
         yield
     finally:
-        if line is not None:
-            line.erase()
+        ended.set()
+        thread.join()
+
+
+@contextlib.contextmanager
+def underway(
+        stream: TextIO, text: str, clock: Callable[[], float] = time.monotonic,
+        period_s: float = PERIOD_S) -> Iterator[None]:
+    """
+    Show what is done and the time spent, for as long as it takes.
+
+    Nothing is shown where ``stream`` is not a terminal.
+    """
+    line = terminal_line(stream)
+    if line is None:
+        yield
+        return
+    start = clock()
+    line.show(text)
+    try:
+        with repeated(lambda: line.show(f'{text}, {clock() - start:.0f} s'), period_s):
+            yield
+    finally:
+        line.erase()
 
 
 class Progress(Protocol):

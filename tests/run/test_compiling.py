@@ -127,3 +127,35 @@ def test_a_tick_that_is_neither_loaded_nor_kept_is_in_the_total(monkeypatch):
     with reported_compilation('isa', said, Clock(SILENT_S)):
         kernels()(1.0)
     assert f'the simulation, {len(before) + 2} kernels, once' in said.getvalue()
+
+
+def test_the_total_grows_when_the_next_kernel_begins_and_not_by_one_each_time():
+    """After the first two, two more are known at once: 2 of 4, never 2 of 3."""
+    said, first = Terminal(), kernels()
+    with reported_compilation('isa', said, Clock(SILENT_S)):
+        first(1.0)
+        kernels()(2.0)
+    shown = [own.partition(' s: ')[0] for own in said.getvalue().split('compiling kernels, ')[1:]]
+    assert [*dict.fromkeys(own.partition(', ')[0] for own in shown)] == ['0 of 2', '2 of 4']
+
+
+def test_a_large_kernel_is_shown_with_the_time_it_takes():
+    """As often as `refresh` is called; nothing before it has lasted, or once it has ended."""
+    said, clock = Terminal(), Clock(SILENT_S)
+    report = compiling.CompilationReport('isa', said, clock)
+    outer = kernels()
+    report.refresh()
+    assert said.getvalue() == ''
+    report.start(outer)
+    report.start(outer)
+    before = said.getvalue()
+    report.refresh()
+    report.refresh()
+    more = said.getvalue().removeprefix(before).split('\r')[1:]
+    assert [own.partition(': ')[0] for own in more] == [
+        'compiling kernels, 0 of 2, 4 s', 'compiling kernels, 0 of 2, 6 s']
+    report.end()
+    report.end()
+    erased = said.getvalue()
+    report.refresh()
+    assert said.getvalue() == erased and erased.endswith('\r\033[K')

@@ -2,8 +2,9 @@
 
 import errno
 import io
+import threading
 
-from isa_ros.text.progress import counted, terminal_line, underway
+from isa_ros.text.progress import counted, repeated, terminal_line, underway
 import pytest
 from tests.text.terminal import Terminal
 
@@ -66,3 +67,36 @@ def test_what_is_under_way_is_shown_until_it_ends_or_fails():
         assert stream.getvalue().endswith('\rreading\033[K')
         raise ZeroDivisionError
     assert stream.getvalue() == '\rreading\033[K\r\033[K' and other.getvalue() == ''
+
+
+def test_the_time_that_was_spent_is_shown_while_it_is_under_way():
+    """As seconds go by, and no more once it has ended."""
+    times, shown = iter([0.0, *(1.2 * k for k in range(1, 1000))]), threading.Event()
+
+    class Watched(Terminal):
+        def write(self, text):
+            if ', 2 s' in text:
+                shown.set()
+            return super().write(text)
+    stream, threads = Watched(), threading.active_count()
+    with underway(stream, 'reading', lambda: next(times), period_s=1e-3):
+        assert shown.wait(20.0)
+    text = stream.getvalue()
+    assert text.startswith('\rreading\033[K\rreading, 1 s\033[K\rreading, 2 s\033[K')
+    assert text.endswith('\r\033[K') and threading.active_count() == threads
+
+
+def test_what_is_repeated_ends_with_its_context():
+    enough, calls = threading.Event(), []
+
+    def call():
+        calls.append(threading.current_thread())
+        if len(calls) == 3:
+            enough.set()
+    with pytest.raises(ZeroDivisionError), repeated(call, 1e-3):
+        assert enough.wait(20.0)
+        raise ZeroDivisionError
+    assert calls[0] is not threading.main_thread() and not calls[0].is_alive()
+    with repeated(call, 1e3):
+        n = len(calls)
+    assert len(calls) == n
