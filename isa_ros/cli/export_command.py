@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Callable, Collection, Mapping
+import sys
 from typing import NamedTuple, TYPE_CHECKING
 
 from isa_ros.cli import shared_arguments
@@ -10,6 +11,7 @@ from isa_ros.cli.running import print_line, simulating
 if TYPE_CHECKING:
     from isa_ros.core.objects import Target
     from isa_ros.export.chosen import ChosenActuator
+    from isa_ros.export.exported import Called
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,26 +54,34 @@ def export(options: argparse.Namespace) -> bool:
     from isa_ros.core.objects import own_target
     from isa_ros.export.chosen import choose
     from isa_ros.export.directory import refuse_foreign, write
-    from isa_ros.export.library import compiler_of, processor_of, target_of
+    from isa_ros.export.library import compile_kernels, compiler_of, processor_of, target_of
+    from isa_ros.text.progress import underway
     target = own_target() if options.target is None else target_of(options.target)
     compiler_of(options.compiler, processor_of(target))
     chosen = choose(
         options.actuator, values_of(options.set, '--set'), preset=options.preset,
         variants=options.variant, load=options.load)
+    if chosen.assumptions:
+        print_line(f'{chosen.config.model}: assumed {", ".join(chosen.assumptions)}; --set gives '
+                   'the values of your data sheets')
     written = (_units if options.fmu else _library)(chosen, target, options)
     refuse_foreign(options.out, written.names)
+    compile_kernels(written.kernels)
     print_line(f'machine code for {target.name} takes 10 to 20 s')
-    write(options.out, written.files())
+    with underway(sys.stderr, 'machine code'):
+        files = written.files()
+    write(options.out, files)
     for name in written.shown:
         print(options.out / name)
     return True
 
 
 class _Written(NamedTuple):
-    """Files of an export by name, and those that are printed."""
+    """Files of an export by name, those that are printed, and the kernels in them."""
 
     names: Collection[str]
     shown: Collection[str]
+    kernels: 'Collection[Called]'
     files: Callable[[], Mapping[str, bytes]]
 
 
@@ -79,7 +89,7 @@ def _library(chosen: 'ChosenActuator', target: 'Target', options: argparse.Names
     from isa_ros.export.exported import exported
     from isa_ros.export.library import library, names_of
     own = exported(chosen, name=options.name)
-    return _Written(names_of(own), (f'{own.word}.h', f'lib{own.word}.so'),
+    return _Written(names_of(own), (f'{own.word}.h', f'lib{own.word}.so'), own.kernels,
                     lambda: library(own, target, options.compiler))
 
 
@@ -87,4 +97,5 @@ def _units(chosen: 'ChosenActuator', target: 'Target', options: argparse.Namespa
     from isa_ros.export.fmi.unit import parts_of, units
     own = parts_of(chosen, options.name)
     names = own.files
-    return _Written(names, names, lambda: units(own, target, options.compiler))
+    return _Written(names, names, (*own.own.kernels, *own.supply.kernels),
+                    lambda: units(own, target, options.compiler))

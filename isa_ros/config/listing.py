@@ -11,7 +11,7 @@ from isa_ros.config.models.catalogue import (
     actuator_model, leg_names, leg_section, Model, model_names)
 from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.runs.model_run import full_key, model_run
+from isa_ros.config.runs.model_run import full_keys, model_run
 from isa_ros.config.runs.robots import FileOf, run_with_robots
 from isa_ros.config.runs.run_config import ROBOTS, RUN, RunConfig
 from isa_ros.config.runs.run_reading import Origins
@@ -91,7 +91,7 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
     """Return the tables of a run file's tree with other values."""
     names = list(section_at(tree.get('actuators', {}), place / 'actuators'))
     if len(names) == 1:
-        values = {full_key(key, names[0]): value for key, value in values.items()}
+        values = full_keys(values, names[0])
     given = changed(tree, values, place.file)
     run, origins = run_with_robots(given, place)
     return '\n\n'.join(_run_tables(

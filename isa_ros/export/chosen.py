@@ -9,7 +9,7 @@ from isa_ros.config.listing import ListedValue, rows, SET
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.actuator_config import ActuatorConfig
-from isa_ros.config.runs.model_run import full_key, model_run
+from isa_ros.config.runs.model_run import assumed_keys, full_keys, model_run
 from isa_ros.config.runs.robots import run_with_robots
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_reading import Origins
@@ -23,6 +23,8 @@ from isa_ros.errors import ConfigError
 OWN, PORT = 'own', 'port'
 LOADS = (OWN, PORT)
 """Where the load of an exported actuator is: its own, or the caller's at its port."""
+ASSUMED = 'assumed, not given'
+"""Source of a parameter of the user's data sheets that the model's value stands for."""
 
 
 class ChosenActuator(NamedTuple):
@@ -33,6 +35,8 @@ class ChosenActuator(NamedTuple):
     row: int
     values: Values
     """Those that replace others, by their keys in the run file."""
+    assumed: Sequence[str] = ()
+    """Keys of its parameters that data sheets would have, of a model of which none is given."""
 
     @property
     def config(self) -> ActuatorConfig:
@@ -47,6 +51,12 @@ class ChosenActuator(NamedTuple):
             found += self._listed(self.config.load, f'{place}.load', 'load.', f'{place}.')
         return found
 
+    @property
+    def assumptions(self) -> list[str]:
+        """Return the assumed parameters with their values."""
+        values = {row.parameter: row.value for row, _ in self.parameters()}
+        return [f'{key} = {values[key]}' for key in self.assumed]
+
     def _listed(self, sheet: Parameters, origin: str, prefix: str, place: str) -> list[
             tuple[ListedValue, float | str]]:
         """Return the rows of a set; ``prefix`` begins names, ``place`` their keys in the run."""
@@ -55,8 +65,8 @@ class ChosenActuator(NamedTuple):
             value = value_of(sheet, row)
             name = f'{prefix}{row.parameter}'
             is_set = any(f'{place}{name}.'.startswith(f'{key}.') for key in self.values)
-            found.append((row._replace(parameter=name, source=SET if is_set else row.source),
-                          value))
+            source = SET if is_set else ASSUMED if name in self.assumed else row.source
+            found.append((row._replace(parameter=name, source=source), value))
         return found
 
 
@@ -101,9 +111,11 @@ def choose(
     name = name if colon else names[0]
     if name not in names:
         raise ConfigError(f'{name!r} is not an actuator of {file}; {alternatives(name, names)}')
-    values = {full_key(key, name): value for key, value in values.items()}
+    values = full_keys(values, name)
     run, origins = run_with_robots(changed(tree, values, place.file), place)
-    return ChosenActuator(_with_load(run, name, load, file), origins, run.index(name), values)
+    return ChosenActuator(
+        _with_load(run, name, load, file), origins, run.index(name), values,
+        assumed_keys(file, values) if file in model_names() else ())
 
 
 def _read(file: str, preset: str | None, variants: Sequence[str]) -> tuple[Tree, Place]:

@@ -1,6 +1,6 @@
 """The header of an exported actuator, from its template and the tables of signals and names."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 import zlib
 
@@ -27,15 +27,17 @@ def filled(text: str, values: Mapping[str, str]) -> str:
     return text
 
 
-def header(word: str, about: str) -> str:
+def header(word: str, about: str, assumed: Sequence[str] = ()) -> str:
     """
     Return the text of the header of an actuator; its names begin with ``word``.
 
-    ``about`` says in a few words which actuator it is. The number of the types that all headers
-    share is that of their text: headers with other types cannot be used together.
+    ``about`` says in a few words which actuator it is, ``assumed`` are values that were not given.
+    The number of the types that all headers share is that of their text: headers with other types
+    cannot be used together.
     """
     text = filled(source('actuator.h'), {
-        'NAME': word, 'GUARD': word.upper(), 'ABOUT': in_comment(about), 'VERSION': VERSION,
+        'NAME': word, 'GUARD': word.upper(), 'ABOUT': in_comment(about),
+        'ASSUMED': _assumed(assumed), 'VERSION': VERSION,
         'WINDOWS': str(FORCE_WINDOWS), 'ENUMERATIONS': _enumerations(), 'SAMPLE': _sample()})
     _, _, types = text.partition(f'#define ISA_ACTUATOR_TYPES {_TYPES}')
     number = zlib.crc32(types.partition('#elif')[0].encode())
@@ -45,6 +47,12 @@ def header(word: str, about: str) -> str:
 def in_comment(text: str) -> str:
     """Return a text as one line of a comment of C."""
     return printable(text).replace('*/', '* /')
+
+
+def _assumed(values: Sequence[str]) -> str:
+    """Return the lines of a comment about values that were not given."""
+    lines = ('', 'Assumed, since --set did not give them:', *values) if values else ()
+    return ''.join(f'\n *{f" {in_comment(line)}" if line else ""}' for line in lines)
 
 
 def upper(name: str) -> str:

@@ -1,6 +1,6 @@
 """An actuator as a shared library of C: its kernels, and the text beside them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 import re
@@ -8,11 +8,12 @@ import shutil
 import subprocess
 import tempfile
 
+from isa_ros.core.compiler import compiled_entry
 from isa_ros.core.kernel import entry_of, KernelEntry
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of, Target, TARGETS
 from isa_ros.errors import ConfigError
-from isa_ros.export.exported import Exported
+from isa_ros.export.exported import Called, Exported
 from isa_ros.export.header import filled, header, source
 from isa_ros.export.tables import tables
 
@@ -24,11 +25,20 @@ FLAGS = ('-std=c11', '-O2', '-fPIC', '-fvisibility=hidden', '-ffreestanding',
 _FUNCTION = re.compile(r'^ISA_EXPORT .*\bISA\((\w+)\)', re.MULTILINE)
 
 
+def entries_of(kernels: Iterable[Called]) -> dict[str, KernelEntry]:
+    """Return kernels without Python around them by the names of their machine code."""
+    return {one.name: entry_of(one.function, kind_of(one.memory)) for one in kernels}
+
+
+def compile_kernels(kernels: Iterable[Called]) -> None:
+    """Compile kernels that are not kept, of which `object_of` would make all at once."""
+    for entry in entries_of(kernels).values():
+        compiled_entry(entry)
+
+
 def kernels_of(own: Exported, target: Target) -> bytes:
     """Return the object of the kernels of an actuator; those of all are the same."""
-    return _object(tuple({
-        one.name: entry_of(one.function, kind_of(one.memory))
-        for one in own.kernels}.items()), target)
+    return _object(tuple(entries_of(own.kernels).items()), target)
 
 
 @cache
@@ -43,7 +53,7 @@ def texts(own: Exported) -> Mapping[str, str]:
     about = f'the actuator {config.name} of {own.chosen.run.source}, model {config.model}'
     code = filled(source('actuator.c'), {'NAME': word})
     return {
-        f'{word}.h': header(word, about), f'{word}.c': code,
+        f'{word}.h': header(word, about, own.chosen.assumptions), f'{word}.c': code,
         f'{word}_tables.h': tables(own), f'{word}.map': _symbols(word, code),
         **{name: filled(source(name), {'NAME': word}) for name in EXAMPLES}}
 

@@ -5,6 +5,7 @@ import re
 import zipfile
 
 from isa_ros.cli.main import main
+from isa_ros.export import library
 from isa_ros.export.library import names_of
 import pytest
 
@@ -27,7 +28,9 @@ def test_a_library_is_written(tmp_path, capsys):
     out = tmp_path / 'made'
     assert main(['export', 'rig_linear:ram', '--c', '--out', str(out), '--name', 'ram',
                  '--set', 'load.inertia=20', '--target', 'x86-64', '--load', 'own']) == 0
-    assert capsys.readouterr().out.splitlines() == [str(out / 'ram.h'), str(out / 'libram.so')]
+    printed = capsys.readouterr()
+    assert printed.out.splitlines() == [str(out / 'ram.h'), str(out / 'libram.so')]
+    assert printed.err.splitlines()[-1] == 'isa: machine code for x86-64 takes 10 to 20 s'
     own = exported(choose('rig_linear'), name='ram')
     assert {path.name for path in out.iterdir()} == {*names_of(own), 'isa_export.json'}
     tables = (out / 'ram_tables.h').read_text()
@@ -87,3 +90,20 @@ def test_foreign_files_stay(tmp_path, capsys):
     assert [path.name for path in Path(tmp_path).iterdir()] == ['mine.txt']
     assert 'is a file, must be a directory' in refused(
         capsys, 'isa_v5', '--c', '--out', tmp_path / 'mine.txt')
+
+
+def test_what_is_assumed_is_told_before_anything_is_compiled(tmp_path, capsys, monkeypatch):
+    """Once, with its values; and the machine code is announced when the kernels are compiled."""
+    done = []
+    monkeypatch.setattr(library, 'compile_kernels', lambda kernels: done.append(
+        [own.function.__name__ for own in kernels]))
+    monkeypatch.setattr(library, 'library', lambda *given: {})
+    out = tmp_path / 'out'
+    assert main(['export', 'cylinder', '--c', '--out', str(out), '--target', 'x86-64',
+                 '--set', 'plant.drive.bore_mm=50']) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        'isa: cylinder: assumed plant.drive.rod_mm = 25, plant.drive.stroke_mm = 200, '
+        'plant.drive.rated_pressure_mpa = 20.7, plant.valve.flow.rated_flow_lpm = 20, '
+        'plant.valve.flow.rated_current_ma = 10; --set gives the values of your data sheets',
+        'isa: machine code for x86-64 takes 10 to 20 s']
+    assert done == [['start_actuator', 'group_tick']]

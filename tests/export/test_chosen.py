@@ -107,3 +107,42 @@ def test_words():
         with pytest.raises(ConfigError, match=r'^isa_\w+ is a type of the header; choose'):
             word_of(actuator, given)
     assert word_of('kfe', 'port') == 'port'
+
+
+STATED = ['plant.drive.bore_mm', 'plant.drive.rod_mm', 'plant.drive.stroke_mm',
+          'plant.drive.rated_pressure_mpa', 'plant.valve.flow.rated_flow_lpm',
+          'plant.valve.flow.rated_current_ma']
+
+
+def test_what_data_sheets_would_have_is_assumed_where_it_is_not_given():
+    chosen = choose('cylinder')
+    assert chosen.assumed == tuple(STATED)
+    assert chosen.assumptions[0] == 'plant.drive.bore_mm = 40' and len(chosen.assumptions) == 6
+    sources = {row.parameter: row.source for row, _ in chosen.parameters()}
+    assert {sources[key] for key in STATED} == {'assumed, not given'}
+    drive = {'bore_mm': 50.0, 'rod_mm': 36.0, 'stroke_mm': 300.0, 'rated_pressure_mpa': 16.0}
+    own = choose('cylinder', {
+        'plant.drive': drive, 'actuators.cylinder.parameters.plant.valve.flow.rated_flow_lpm': 40})
+    assert own.assumptions == ['plant.valve.flow.rated_current_ma = 10']
+    sources = {row.parameter: row.source for row, _ in own.parameters()}
+    assert sources['plant.drive.bore_mm'] == sources['plant.valve.flow.rated_flow_lpm'] == '--set'
+
+
+def test_nothing_is_assumed_of_a_model_with_a_data_sheet_or_of_a_run_file():
+    for chosen in (choose('isa_v5'), choose('rig_cylinder')):
+        assert not chosen.assumed and chosen.assumptions == []
+
+
+def test_one_value_with_two_keys_is_refused_unless_they_say_the_same():
+    full = 'actuators.cylinder.parameters.plant.drive.bore_mm'
+    with pytest.raises(ConfigError, match=(
+            rf'^plant.drive.bore_mm = 40 and {full} = 50 are one value, must be given once$')):
+        choose('cylinder', {'plant.drive.bore_mm': 40, full: 50})
+    assert choose('cylinder', {'plant.drive.bore_mm': 50, full: 50}
+                  ).config.sheet.plant.drive.bore_mm == 50.0
+
+
+def test_a_name_for_the_bore_that_is_not_its_key_is_refused():
+    for name in ('inner_diameter_mm', 'bore'):
+        with pytest.raises(ConfigError, match=f'plant.drive.*{name}'):
+            choose('cylinder', {'plant.drive.bore_mm': 40, f'plant.drive.{name}': 40})

@@ -94,3 +94,14 @@ def test_a_name_does_not_end_the_comment(tmp_path):
 
 def test_nothing_is_left_to_fill():
     assert re.findall('@[A-Z]+@', header('isa_one', 'an actuator')) == []
+
+
+def test_what_was_assumed_is_in_the_first_comment(tmp_path):
+    text = header('isa_own', 'the actuator own', ['plant.a = 1', 'plant.b */ = 2'])
+    first = text.partition('*/')[0].splitlines()
+    assert first[1] == ' * isa_own: the actuator own.'
+    assert first[2:6] == [' *', ' * Assumed, since --set did not give them:', ' * plant.a = 1',
+                          ' * plant.b * / = 2']
+    assert 'Assumed' not in header('isa_own', 'the actuator own')
+    done = compiled(text, tmp_path, 'c99')
+    assert done.returncode == 0, done.stderr

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.runs.model_run import full_key, LOAD, model_run
+from isa_ros.config.runs.model_run import full_keys, LOAD, model_run
 from isa_ros.config.runs.robots import run_with_robots
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import changed
@@ -78,8 +78,8 @@ def chosen(choice: Choice) -> ChosenRun:
         if head == LOAD and rest and not keeps_load:
             load_values[rest] = value
         else:
-            values[full_key(key, name)] = value
-    tree = changed(tree, values, place.file)
+            values[key] = value
+    tree = changed(tree, full_keys(values, name), place.file)
     return ChosenRun(tree, place, run_with_robots(tree, place)[0], name, load_values)
 
 

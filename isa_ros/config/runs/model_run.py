@@ -7,13 +7,15 @@ model: ``reu.force.kp``, ``plant.oil.dead_volume_ml``, ``load.stiffness``, ``pre
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
-from isa_ros.config.text.changes import replaced
+from isa_ros.config.text.changes import replaced, Values
 from isa_ros.config.text.sections import entry_at, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MPA
+from isa_ros.errors import ConfigError
 
 LOAD = 'load'
 _OF_SHEET = ('spool_feedback', 'plant', 'reu')
@@ -56,3 +58,33 @@ def full_key(key: str, actuator: str) -> str:
     if head in _OF_ACTUATOR:
         return f'actuators.{actuator}.{key}'
     return key
+
+
+def full_keys(values: Values, actuator: str) -> dict[str, Any]:
+    """
+    Return values by their keys in a run file, as `full_key`.
+
+    Raises
+    ------
+    ConfigError
+        One value has two keys, and two numbers.
+
+    """
+    found: dict[str, Any] = {}
+    given: dict[str, str] = {}
+    for key, value in values.items():
+        full = full_key(key, actuator)
+        if full in found and found[full] != value:
+            raise ConfigError(
+                f'{given[full]} = {found[full]} and {key} = {value} are one value, must be given '
+                'once')
+        found[full], given[full] = value, key
+    return found
+
+
+def assumed_keys(model: str, values: Values) -> tuple[str, ...]:
+    """Return what a model has of no data sheet, and ``values`` by full keys do not give either."""
+    def is_given(key: str) -> bool:
+        full = f'{full_key(key, model)}.'
+        return any(full.startswith(f'{own}.') for own in values)
+    return tuple(key for key in actuator_model(model, 'model').stated if not is_given(key))

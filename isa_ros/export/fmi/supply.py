@@ -42,9 +42,14 @@ class UnitSupply(NamedTuple):
         """Return whether its pressure moves within a tick."""
         return len(self.answers) > 0
 
+    @property
+    def kernels(self) -> tuple[Called, ...]:
+        """Return all kernels with their memories."""
+        return *self.before, *self.after
+
     def layout(self) -> MemoryLayout:
         """Return the places of all its memory, in one block."""
-        return MemoryLayout((*(one.memory for one in (*self.before, *self.after)),
+        return MemoryLayout((*(one.memory for one in self.kernels),
                              (self.ports, self.feeds, self.replies, self.fed)))
 
 

@@ -66,7 +66,7 @@ def _declared() -> Iterator[str]:
 def _words(supply: UnitSupply) -> list[str]:
     """Return the words of the tables of all kernels, one after the other."""
     layout = supply.layout()
-    return [f'{{{word.value}, {int(word.is_place)}}}' for one in (*supply.before, *supply.after)
+    return [f'{{{word.value}, {int(word.is_place)}}}' for one in supply.kernels
             for word in layout.table(one.memory)]
 
 
@@ -76,7 +76,7 @@ def source(
     """Return the text of the tables."""
     inputs = {variable.name: variable.place for variable in table if variable.home is Home.INPUT}
     layout = supply.layout()
-    called = (*supply.before, *supply.after)
+    called = supply.kernels
     ends = np.cumsum([0, *(len(list(layout.table(one.memory))) for one in called)])
     calls = [f'{{{one.name}, {at}}}' for one, at in zip(called, ends)]
     split = len(supply.before)

@@ -7,8 +7,6 @@ from io import BytesIO
 from typing import NamedTuple
 import zipfile
 
-from isa_ros.core.kernel import entry_of
-from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of, Target
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.export.chosen import ChosenActuator
@@ -20,7 +18,7 @@ from isa_ros.export.fmi.table import variables
 from isa_ros.export.fmi.tuned import tuned, TunedValue
 from isa_ros.export.fmi.variables import Variable
 from isa_ros.export.header import filled
-from isa_ros.export.library import built, kernels_of, processor_of, texts
+from isa_ros.export.library import built, entries_of, kernels_of, processor_of, texts
 
 PLATFORMS: Mapping[str, Mapping[Version, str]] = {
     'x86_64': {Version.FMI2: 'linux64', Version.FMI3: 'x86_64-linux'},
@@ -88,9 +86,7 @@ def units(parts: UnitParts, target: Target, compiler: str = 'cc') -> dict[str, b
 def made(parts: UnitParts, target: Target) -> UnitContent:
     """Return what the units are made of for a kind of processor."""
     own, supply, may_change, table = parts
-    objects = kernels_of(own, target), object_of({
-        one.name: entry_of(one.function, kind_of(one.memory))
-        for one in (*supply.before, *supply.after)}, target)
+    objects = kernels_of(own, target), object_of(entries_of(supply.kernels), target)
     of_library = texts(own)
     sources = {
         f'{own.word}.c': of_library[f'{own.word}.c'] + filled(
@@ -123,7 +119,8 @@ def archive(own: UnitContent, version: Version, compiler: str = 'cc') -> bytes:
     step = actuator.step_ns / NS_PER_SECOND
     about = About(config.name, word, own.token,
                   f'actuator {config.name} of {run.source}, model {config.model}, with its '
-                  f'supply; its tick is {step:g} s', step)
+                  f'supply; its tick is {step:g} s'
+                  + ''.join(f'; assumed: {own}' for own in actuator.chosen.assumptions), step)
     found = BytesIO()
     with zipfile.ZipFile(found, 'w', zipfile.ZIP_DEFLATED) as file:
         for path, content in (

@@ -1,5 +1,5 @@
 /*
- * @NAME@: @ABOUT@.
+ * @NAME@: @ABOUT@.@ASSUMED@
  *
  * The model of the actuator with its sensors and its controller (REU), as isa_ros @VERSION@ has it,
  * as a library without dependencies. C99, C11 or C++11; docs/export.md has examples.
