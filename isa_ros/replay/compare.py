@@ -97,7 +97,7 @@ class Comparer:
             self._next = next(self._expected, None)
         self._compare_block()
         found = [own.difference for own in sorted(
-            self._topics.values(), key=lambda own: (own.topic != BAG, _order(own)))]
+            self._topics.values(), key=lambda own: (own.topic != BAG, _by_size(own)))]
         return RunDifference(self._ticks, self._messages, self._end_ns, self.difference,
                              [difference for difference in found if difference is not None])
 
@@ -156,19 +156,24 @@ class Comparer:
         for topic in self._topics.values():
             topic.compare()
         differing = [topic for topic in self._topics.values() if topic.first is not None]
-        self.difference = min(differing, key=_order).first if differing else None
+        order = _by_size if self._is_to_end else _by_name
+        self.difference = min(differing, key=order).first if differing else None
 
 
-def _order(topic: TopicComparison) -> tuple[bool, int, bool, float, str]:
+def _by_name(topic: TopicComparison) -> tuple[bool, int, bool, str]:
     """
-    Return the order of topics by their first differences: by time, whole ticks before messages.
+    Return the order of topics by first differences: their times, whole ticks first, then names.
 
-    At equal times the one with the larger deviation is first. Diagnostics are last: they say in
-    words what other topics have as numbers. Those without a difference may be anywhere.
+    Diagnostics are last: they say in words what other topics have as numbers.
     """
     name, first = topic.topic, topic.first
-    return (name == diagnostics.TOPIC[0], 0 if first is None else first.t_ns, name != BAG,
-            -topic.proportion, name)
+    return name == diagnostics.TOPIC[0], first.t_ns if first else 0, name != BAG, name
+
+
+def _by_size(topic: TopicComparison) -> tuple[bool, int, bool, float, str]:
+    """Return the order in which of equal times the topic with the largest deviation is first."""
+    *place, name = _by_name(topic)
+    return (*place, -topic.proportion, name)
 
 
 def retyped(expected: Bag, types: Mapping[str, str]) -> list[FirstDifference]:

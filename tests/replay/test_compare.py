@@ -24,13 +24,12 @@ def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):
 
 
 def test_first_difference_names_tick_topic_field_and_both_values(bag):
-    """Of several at one tick the one that is farther off for its size."""
     found = difference(bag, produced(force=3.0, spool=4.0))
     assert found == FirstDifference(
-        7, 7 * STEP_NS, '/hip/valve', 'position[0]', np.sin(0.7 + 5), 4.0)
+        7, 7 * STEP_NS, '/hip/joint_states', 'effort[0]', np.sin(0.7 + 2), 3.0)
     assert str(found) == (
-        'tick 7 (t = 0.007000 s), /hip/valve, position[0]: '
-        f'expected {float(np.sin(0.7 + 5))!r}, got 4.0')
+        'tick 7 (t = 0.007000 s), /hip/joint_states, effort[0]: '
+        f'expected {float(np.sin(0.7 + 2))!r}, got 3.0')
 
 
 def test_difference_of_one_bit_counts(bag):
@@ -243,8 +242,9 @@ def test_topics_have_the_order_of_their_first_differences_and_the_larger_first(t
     assert [own.topic for own in compare_bags(bag, other).topics] == [
         '/hip/joint_states', '/hip/valve']
     least = Bag(record(tmp_path / 'least', N, {2: {'position': 1e-9, 'spool': 9.0}}))
-    assert [own.topic for own in compare_bags(bag, least).topics] == [
-        '/hip/valve', '/hip/joint_states']
+    report = compare_bags(bag, least)
+    assert [own.topic for own in report.topics] == ['/hip/valve', '/hip/joint_states']
+    assert report.difference == report.topics[0].first
 
 
 def test_diagnostics_are_told_of_last(bag):
