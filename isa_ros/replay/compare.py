@@ -172,8 +172,8 @@ def _by_name(topic: TopicComparison) -> tuple[bool, int, bool, str]:
 
 def _by_size(topic: TopicComparison) -> tuple[bool, int, bool, float, str]:
     """Return the order in which of equal times the topic with the largest deviation is first."""
-    *place, name = _by_name(topic)
-    return (*place, -topic.proportion, name)
+    is_told, t_ns, is_part, name = _by_name(topic)
+    return is_told, t_ns, is_part, -topic.proportion, name
 
 
 def retyped(expected: Bag, types: Mapping[str, str]) -> list[FirstDifference]:

@@ -29,7 +29,7 @@ class _Window(NamedTuple):
     """The messages of a device between which a count began."""
 
     begin: Begin
-    count: float
+    told: float
     """What the later one says."""
     is_known: bool
     """Whether the state between them is that of the earlier one."""
@@ -135,7 +135,7 @@ def _commands(
         if field == REQUESTS:
             bits = [own & kind != 0 for kind in (HAS_CLEAR_FAULT, HAS_QUICK_STOP, WAS_REFUSED)]
             if any(bits):
-                yield _Command(tick, sum(bits), bits[-1] or window.is_known and tick < last)
+                yield _Command(tick, bits.count(True), bits[-1] or window.is_known and tick < last)
 
 
 def _narrowed(window: _Window, commands: Sequence[_Command]) -> Begin:
@@ -149,7 +149,7 @@ def _narrowed(window: _Window, commands: Sequence[_Command]) -> Begin:
     last, rest = window.begin.last, 0
     for own in reversed(commands):
         rest, last = rest + own.most, own.tick
-        if rest >= window.count:
+        if rest >= window.told:
             break
     else:
         return window.begin
