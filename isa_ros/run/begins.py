@@ -135,7 +135,7 @@ def _commands(
         if field == REQUESTS:
             bits = [own & kind != 0 for kind in (HAS_CLEAR_FAULT, HAS_QUICK_STOP, WAS_REFUSED)]
             if any(bits):
-                yield _Command(tick, bits.count(True), bits[-1] or window.is_known and tick < last)
+                yield _Command(tick, bits.count(True), bits[-1] or window.is_known)
 
 
 def _narrowed(window: _Window, commands: Sequence[_Command]) -> Begin:
