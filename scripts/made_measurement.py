@@ -54,7 +54,8 @@ def measured(
 
     ``has_velocity``: it was commanded with the velocity too, which the file does not have.
     """
-    result = isa_ros.load(machine, changes=changes).simulate(duration, [PositionSweep(has_velocity)])
+    sweep = PositionSweep(has_velocity)
+    result = isa_ros.load(machine, changes=changes).simulate(duration, [sweep])
     random = np.random.default_rng(5)
     t = result.time
     columns = [1e3 * t, [1e3 * wanted(own) for own in t]]
