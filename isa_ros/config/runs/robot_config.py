@@ -39,7 +39,7 @@ from isa_ros.surroundings.bodies.robot.messages import robot_messages
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
-    JointLinkage, matrix, RobotDrive, RobotSheet, RobotUnit, vector)
+    JointLinkage, matrix, MovingPart, RobotDrive, RobotSheet, RobotUnit, vector)
 from isa_ros.surroundings.bodies.robot.unit_errors import changing_values
 from isa_ros.surroundings.impact import contact_time
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
@@ -271,10 +271,12 @@ class RobotConfig(BodyConfig):
     def body(self, made: BodyInputs) -> Robot:
         """Return the robot; as `BodyConfig.body`."""
         start = robot_start(self.start, self.tree, self.sheet.contacts, self.passive)
+        mechanics = [actuator.sheet.plant.mechanics for actuator in made.actuators]
         return Robot(
             self.sheet, start, made.step_ns, made.rows,
             release_ns=round(self.start.root.release_s * NS_PER_SECOND),
-            units=self.units(made.step_ns, made.seed))
+            units=self.units(made.step_ns, made.seed),
+            moving=[MovingPart(own.inertia, own.sensor_stiffness) for own in mechanics])
 
 
 def _length(own: DriveConfig) -> str:

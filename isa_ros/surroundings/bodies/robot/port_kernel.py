@@ -1,22 +1,23 @@
 """
 Exchange of a robot with its actuators: load ports down, a tick under their forces.
 
-A ``state`` is a row of floats: y of `motion`, what `keep_forces` keeps of the k actuators (force,
-slope, mean, mean before; k each), and 1.0 while the robot is held. ``rows`` (k,) are the places of
-the actuators in ``ports`` and ``replies``. L13 to L16 are those of the leg for any tree.
+A ``state`` is a row of floats: y of `motion`, the `KeptForces` of the k actuators, and 1.0 while
+the robot is held. ``rows`` (k,) are the places of the actuators in ``ports`` and ``replies``. L13
+to L15 are those of the leg for any tree; L32 takes the place of L16.
 """
 
 import math
-from typing import Any, NamedTuple
 
-from isa_ros.core.kernel import kernel, kernel_function
+from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
+from isa_ros.surroundings.bodies.robot.kept_forces import (
+    FIELDS, keep_rigid_forces, kept_part)
 from isa_ros.surroundings.bodies.robot.motion import (
     let_go, look, move, robot_step, tree_of)
 from isa_ros.surroundings.bodies.robot.reach import along, motion_by
 from isa_ros.surroundings.bodies.robot.tree import coordinates, root_speeds, solve
 from isa_ros.surroundings.ground import contact
-from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports
+from isa_ros.surroundings.port import assumed_force, match_ports
 from isa_ros.surroundings.vectors import dot, first_broken, plus, scaled, three, ZERO
 
 SUBSTEP_NS = 200_000        # longest Runge-Kutta step of a robot, a force window of a tick of 1 ms
@@ -25,28 +26,10 @@ PROBE_SPEED = 1e-5          # m/s | rad/s: equally small against impact speeds
 DEAD_CENTRE = 1e-12         # 1/kg | 1/(kg m2): below it an actuator does not move the robot
 
 
-class KeptForces(NamedTuple):
-    """Views of what `keep_forces` keeps, (k,) each."""
-
-    force: Any
-    slope: Any
-    mean_force: Any
-    older_mean: Any
-
-
 @kernel
 def motion_part(state, k):
     """Return the view of y in a state."""
-    return state[:len(state) - 4 * k - 1]
-
-
-@kernel_function
-def kept_part(state, k):
-    """Return the views of the forces in a state."""
-    at = len(state) - 4 * k - 1
-    return KeptForces(force=state[at:at + k], slope=state[at + k:at + 2 * k],
-                      mean_force=state[at + 2 * k:at + 3 * k],
-                      older_mean=state[at + 3 * k:at + 4 * k])
+    return state[:len(state) - FIELDS * k - 1]
 
 
 @kernel
@@ -126,7 +109,7 @@ def robot_instant(state, forces, links, speeds, drives, levers, contacts, scratc
 @kernel
 def robot_ports(state, tick, rows, links, speeds, drives, levers, contacts, scratch, ports):
     """
-    Fill the `LOAD_PORT` of all actuators for ``tick`` seconds  (L1, L13-L16).
+    Fill the `LOAD_PORT` of all actuators for ``tick`` seconds  (L1, L13-L15).
 
     k and d are the response of the ground. Pressures are left as they are.
     """
@@ -140,7 +123,7 @@ def robot_ports(state, tick, rows, links, speeds, drives, levers, contacts, scra
         port.a0 = along(drive, levers, tree.acceleration) + drive.curvature
         inverse_mass = fill_response(drive, is_held, tree)
         k, c = contact_response(y, tree)
-        port.inverse_mass = inverse_mass
+        port.inverse_mass = drive.inverse_mass = inverse_mass
         port.stiffness = bounded(inverse_mass * k, math.pi * math.pi / (tick * tick))
         port.damping = bounded(inverse_mass * c, 1.0 / tick)
     predict(y, tick, kept, is_held, tree)
@@ -183,8 +166,9 @@ def robot_tick(state, step_ns, rows, links, speeds, drives, levers, contacts, sc
             robot_step(y, h, tree.forces, is_held, tree)
     broken = first_broken(y)
     if broken < 0:
-        keep_forces(kept_part(state, n), step_ns / NS_PER_SECOND, rows, replies)
         for j in range(n):
             tree.forces[j] = replies[rows[j]].force
         move(y, tree.forces, is_held, tree)
+        keep_rigid_forces(
+            kept_part(state, n), step_ns / NS_PER_SECOND, rows, drives, replies)
     return broken

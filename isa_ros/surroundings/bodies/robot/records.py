@@ -53,6 +53,8 @@ DRIVE = np.dtype([
     ('link_a', '<i8'), ('point_a', '<f8', (3,)),
     ('link_b', '<i8'), ('point_b', '<f8', (3,)),
     ('retracted_length', '<f8'),
+    ('moving_mass', '<f8'),             # of its piston or rotor, kg | kg m2; of a `MovingPart`
+    ('inverse_mass', '<f8'),            # of its load, in the ports of this tick
     # Of an instant:
     ('position', '<f8'), ('velocity', '<f8'),
     ('curvature', '<f8'),               # J' q', what x'' has without q''

@@ -19,13 +19,13 @@ from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.surroundings.bodies.kernel_body import KernelBody
 from isa_ros.surroundings.bodies.robot import stepping
 from isa_ros.surroundings.bodies.robot.holding import holding_forces
+from isa_ros.surroundings.bodies.robot.kept_forces import FIELDS, kept_part
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
-from isa_ros.surroundings.bodies.robot.port_kernel import kept_part
 from isa_ros.surroundings.bodies.robot.records import (
     contact_records, drive_records, link_records, speed_records, unit_records)
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
-    JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
+    JointLinkage, MovingPart, Push, RobotSheet, RobotStart, RobotUnit)
 from isa_ros.surroundings.bodies.robot.unit_errors import changing_values, write_errors
 from isa_ros.surroundings.inertial_unit import AXES
 from isa_ros.surroundings.vectors import first_broken
@@ -42,7 +42,8 @@ class Robot(KernelBody):
     At t = 0 it is at rest, what the start holds is held, and the actuators carry the rest
     (`actuator_forces`). It is released before the tick that begins at ``release_ns``; None: by
     `release` alone. ``rows`` are those of its actuators, in the order of the sheet's drives. Each
-    of the ``units`` keeps its reading in the sample until the next one.
+    of the ``units`` keeps its reading in the sample until the next one. ``moving`` are the moving
+    parts of its actuators; none: without mass.
 
     Raises
     ------
@@ -53,7 +54,7 @@ class Robot(KernelBody):
 
     def __init__(self, sheet: RobotSheet, start: RobotStart, step_ns: int,
                  rows: Sequence[int] | None = None, release_ns: int | None = None,
-                 units: Sequence[RobotUnit] = ()) -> None:
+                 units: Sequence[RobotUnit] = (), moving: Sequence[MovingPart] = ()) -> None:
         k = len(sheet.drives)
         super().__init__(
             step_ns, range(k) if rows is None else rows,
@@ -64,12 +65,14 @@ class Robot(KernelBody):
             own.name: own.errors for own in units if own.errors is not None}) or Parameters()
         self._names = state_names(sheet)
         self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
+        moving = moving or k * [MovingPart()]
         records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
                    contact_records(sheet))
         n = len(self._names)
         self._arrays = stepping.RobotRecords(
             *records, np.zeros(scratch_size(len(records[1]), k, n)))
-        self._state = np.zeros(n + 4 * k + 1)
+        self._arrays.drives['moving_mass'] = [part.mass for part in moving]
+        self._state = np.zeros(n + FIELDS * k + 1)
         values = self._sample.view(np.float64)
         columns = float_columns(self._sample.dtype)
         self._shown = (
@@ -79,14 +82,15 @@ class Robot(KernelBody):
         self.filling = Rebound(stepping.fill_ports, lambda ports: stepping.RobotPorts(
             self._clock, self._state, self.rows, self._arrays, ports))
         self.advancing = Rebound(stepping.advance, self._tick)
-        self._start(sheet, start)
+        self._start(sheet, start, moving)
 
     def _tick(self, replies: np.ndarray) -> stepping.RobotTick:
         """Return the memory of a tick with these replies."""
         return stepping.RobotTick(
             self._clock, self._state, self.rows, self._arrays, replies, *self._shown)
 
-    def _start(self, sheet: RobotSheet, start: RobotStart) -> None:
+    def _start(self, sheet: RobotSheet, start: RobotStart,
+               moving: Sequence[MovingPart]) -> None:
         y = self._motion
         at = 0
         if sheet.is_free:
@@ -95,7 +99,8 @@ class Robot(KernelBody):
         self._state[-1] = 1.0
         forces = holding_forces(y, self._arrays, [own.actuator for own in sheet.drives])
         kept = kept_part(self._state, len(forces))
-        kept.force[:] = kept.mean_force[:] = kept.older_mean[:] = forces
+        kept.force[:] = kept.last_force[:] = forces
+        kept.stretch[:] = forces / [part.cell_stiffness for part in moving]
         self._show = Bound(stepping.show, self._tick(np.zeros(0, LOAD_REPLY)))
         self._show.run()
 

@@ -84,6 +84,15 @@ class RobotFrame:
     rotation: Matrix = UPRIGHT
 
 
+class MovingPart(NamedTuple):
+    """Piston or rotor of an actuator, behind its load cell or torque sensor."""
+
+    mass: float = 0.0
+    """kg | kg m2."""
+    cell_stiffness: float = math.inf
+    """Of the cell, N/m | Nm/rad."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointLinkage:
     """A linkage that drives one joint: direct, slider-crank or four-bar (L3, L4, L5)."""

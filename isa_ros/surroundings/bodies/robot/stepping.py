@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import PLANT_STEP_NS
+from isa_ros.surroundings.bodies.robot.kept_forces import kept_part
 from isa_ros.surroundings.bodies.robot.motion import tree_of
 from isa_ros.surroundings.bodies.robot.port_kernel import (
-    kept_part, motion_part, robot_instant, robot_ports, robot_tick)
+    motion_part, robot_instant, robot_ports, robot_tick)
 from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.clock import is_released
 import numpy as np

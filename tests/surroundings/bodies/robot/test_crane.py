@@ -5,6 +5,7 @@ import re
 
 import isa_ros
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
+from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sheet import (
     matrix, Points, RobotDrive, RobotJoint, RobotLink, RobotSheet, RobotStart, vector)
@@ -86,7 +87,8 @@ def test_both_swing_alike_under_the_same_forces(both: tuple) -> None:
     0.3 s of Runge and Kutta at 0.2 ms: coordinates, speeds and ports, look-ahead included.
 
     Rounding differs, and a0: J' q' of the simulator is a difference over 1 us. a_bias and jerk
-    divide what is left by H and H^2.
+    divide what is left by H and H^2. The forces are continuous and grow evenly within a tick:
+    there L16 of the one and L32 of the other, whose actuators have no moving mass, are one line.
     """
     replies = np.zeros(2, LOAD_REPLY)
     ports = np.zeros((2, TICKS, 2), LOAD_PORT)
@@ -94,9 +96,11 @@ def test_both_swing_alike_under_the_same_forces(both: tuple) -> None:
     for tick in range(TICKS):
         for body, own in zip(both, ports):
             body.ports(own[tick])
-        t = (tick + (np.arange(5)[:, np.newaxis] + 0.5) / 5) * STEP
-        forces = hold * (1.0 + 0.5 * np.sin([8.0, -11.0] * t))
-        replies['mean_forces'], replies['force'] = forces.T, forces[-1]
+        begin, end = (hold * (1.0 + 0.5 * np.sin(np.array([8.0, -11.0]) * t))
+                      for t in (tick * STEP, (tick + 1) * STEP))
+        middles = (np.arange(FORCE_WINDOWS) + 0.5) / FORCE_WINDOWS
+        replies['mean_forces'] = begin[:, np.newaxis] + np.outer(end - begin, middles)
+        replies['force'] = end
         for body in both:
             body.advance(replies)
     assert np.ptp(ports['x0'][0], axis=0).min() > 0.01

@@ -1,8 +1,9 @@
 """The exchange of a whole quadruped with its twelve actuators, against ticks of a tenth."""
 
 import json
+import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import isa_ros
 from isa_ros.actuator.group import ActuatorGroup
@@ -20,7 +21,9 @@ DURATION = 0.3      # s: a fall of 5 cm takes 0.10 s
 WINDOW = 0.2e-3     # s, of a tick of 1 ms a fifth
 FINE = {'adc_bits': 24, 'encoder_resolution': 1e-9}
 CLEAR_MS = 90.0     # until then all feet are in the air
+START = {'height_mm': 50.0, 'roll_deg': 3.0, 'pitch_deg': 4.0}
 LIGHT = {'mechanics': {'sensor_damping': 200.0}}    # a damping ratio of 0.01
+RINGING = {'friction': {'stiction': 1.0, 'coulomb': 1.0, 'bristle_damping': 0.0, 'viscous': 0.0}}
 
 
 class Drop(NamedTuple):
@@ -34,15 +37,20 @@ class Drop(NamedTuple):
     """Sum of all work that was exchanged, to and fro, J."""
 
 
-def quadruped(folder: Path, step_ms: float, is_light: bool) -> isa_ros.Simulation:
-    """Return a quadruped 5 cm above the ground, tilted, with fine sensors and no controller."""
+def quadruped(folder: Path, step_ms: float, plant: dict[str, Any],
+              start: dict[str, float] = START) -> isa_ros.Simulation:
+    """
+    Return a quadruped above the ground, tilted, with fine sensors and no controller.
+
+    ``plant`` are values of its cylinders.
+    """
     tree = yaml.safe_load(find('quadruped.yaml', 'config').read_text())
     tree |= {'step_ms': step_ms, 'controller_offset_ms': 0.08}
     tree.pop('controllers', None)
     for name, actuator in tree['actuators'].items():
-        light = LIGHT if is_light and not name.endswith('haa') else {}
-        actuator['parameters'] = {'plant': {'sensors': FINE, **light}}
-    tree['body']['start'] |= {'height_mm': 50.0, 'roll_deg': 3.0, 'pitch_deg': 4.0}
+        own = {} if name.endswith('haa') else plant
+        actuator['parameters'] = {'plant': {'sensors': FINE, **own}}
+    tree['body']['start'] |= start
     path = folder / f'drop_{step_ms}.yaml'
     path.write_text(json.dumps(tree))
     return isa_ros.load(path).simulation()
@@ -50,7 +58,7 @@ def quadruped(folder: Path, step_ms: float, is_light: bool) -> isa_ros.Simulatio
 
 def drop(folder: Path, step_ms: float, is_light: bool, foresees: bool = False) -> Drop:
     """Return a drop; ``foresees``: the ports know the forces of their own tick."""
-    simulation = quadruped(folder, step_ms, is_light)
+    simulation = quadruped(folder, step_ms, LIGHT if is_light else {})
     body, group = simulation.surroundings.bodies['body'], simulation.group
     means, given, taken = [], [], []
     for tick in range(round(DURATION / (step_ms * 1e-3))):
@@ -83,7 +91,7 @@ def foreseen_tick(surroundings: Surroundings, group: ActuatorGroup, tick: float)
     Advance by a tick twice: with ports as they are, and with such as foresee what it gave.
 
     L15 with the places and speeds at the end of the first try, and with the line through its mean
-    forces instead of L16.
+    forces instead of L32.
     """
     body = surroundings.bodies['body']
     before, actuators = body.snapshot(), group.snapshot()
@@ -125,49 +133,72 @@ def references(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Drop]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(('is_light', 'most'), [(False, 5e-3), (True, 7e-3)])
+@pytest.mark.parametrize('is_light', [False, True])
 def test_a_quadruped_lands_as_with_ticks_of_a_tenth(
-        tmp_path: Path, references: dict[bool, Drop], is_light: bool, most: float) -> None:
+        tmp_path: Path, references: dict[bool, Drop], is_light: bool) -> None:
     """
-    Forces at every joint within 0.5 % rms, their peaks within 1 %.
+    Forces at every joint within 0.5 % rms, their peaks within 1 %, energy within 1.5e-5.
 
-    With load cells of a damping ratio of 0.01 all but one are below 0.35 %; one hip of a hind leg
-    has 0.6 %, and 1.1 % in its peak. The sensors are 4000 times as fine as the shipped ones: with
-    those a fall from 1 um higher changes the small forces at HAA by 0.4 % already, by where the
-    converters round.
+    The sensors are 4000 times as fine as the shipped ones: with those a fall from 1 um higher
+    changes the small forces at HAA by 0.4 % already, by where the converters round.
     """
     reference, own = references[is_light], drop(tmp_path, 1.0, is_light)
-    rms = errors(own, reference)
-    assert rms.max() < most and np.sort(rms)[-2] < 5e-3
+    assert errors(own, reference).max() < 5e-3
     peaks = np.abs(own.forces).max(axis=0) / np.abs(reference.forces).max(axis=0) - 1.0
-    assert np.abs(peaks).max() < 2.0 * most
+    assert np.abs(peaks).max() < 1e-2
+    assert own.lacking < 1.5e-5 * own.flow
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize('is_light', [False, True])
-def test_half_a_tick_has_a_tenth_of_the_error_and_of_the_energy_that_does_not_close(
+def test_half_a_tick_has_a_sixth_of_the_error_and_a_tenth_of_the_energy_that_does_not_close(
         tmp_path: Path, references: dict[bool, Drop], is_light: bool) -> None:
-    """Below 0.05 % rms at every joint, and 2e-6 of the exchanged work, of 3e-5 at 1 ms."""
+    """Below 0.05 % rms at every joint, and 1.5e-6 of the exchanged work, of 1.1e-5 at 1 ms."""
     own = drop(tmp_path, 0.5, is_light)
     assert own.flow > 200.0
     assert errors(own, references[is_light]).max() < 5e-4
-    assert own.lacking < 2e-6 * own.flow
+    assert own.lacking < 1.5e-6 * own.flow
 
 
 @pytest.mark.slow
 def test_what_1_ms_gets_wrong_are_the_forces_that_the_look_ahead_assumes(
         tmp_path: Path, references: dict[bool, Drop]) -> None:
     """
-    Ports of the same form that know the forces of their tick: 0.1 % rms, not 0.6 %.
+    Ports of the same form that know the forces of their tick: 0.1 % rms, not 0.23 %.
 
-    Neither linearisation nor windows are at fault, but L16: as a foot lands, the next tick's
-    forces are no continuation of the last one's. Energy that does not close: 7e-6, not 3e-5.
+    Neither linearisation nor windows are at fault, but L32: as a foot lands, the next tick's
+    forces are no continuation of the last one's. Energy that does not close: 7e-6, not 1.1e-5.
     """
     own, foreseen = (drop(tmp_path, 1.0, True, foresees) for foresees in (False, True))
-    assert errors(foreseen, references[True]).max() < 1.2e-3
-    assert errors(foreseen, references[True])[7] < 0.1 * errors(own, references[True])[7]
-    assert 2e-5 < own.lacking / own.flow < 5e-5
-    assert foreseen.lacking < 0.3 * own.lacking
+    assert errors(foreseen, references[True]).max() < 1.2e-3 < errors(own, references[True]).max()
+    assert errors(foreseen, references[True])[7] < 0.2 * errors(own, references[True])[7]
+    assert 0.9e-5 < own.lacking / own.flow < 1.5e-5
+    assert foreseen.lacking < 0.75 * own.lacking
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('stiffness', [7e7, 1e8])
+def test_the_ringing_of_light_cells_dies_out_where_it_beats_with_the_ticks(
+        tmp_path: Path, stiffness: float) -> None:
+    """
+    A damping ratio of 0.001, hardly any friction: standing after a fall of 5 mm, for 1 s.
+
+    By what a force in a window differs from the line through its neighbours. With the line
+    through the forces themselves (no moving mass in L32) the first grows 1e4 times within 0.4 s,
+    and the run with the second ends by values that are not finite.
+    """
+    simulation = quadruped(tmp_path, 1.0, RINGING | {'mechanics': {
+        'sensor_stiffness': stiffness, 'sensor_damping': 2e-3 * math.sqrt(0.6 * stiffness)}},
+        {'height_mm': 5.0, 'roll_deg': 2.0, 'pitch_deg': 1.0})
+    rows = simulation.surroundings.bodies['body'].rows
+    swings = []
+    for _ in range(1000):
+        simulation.step()
+        means = simulation.group.replies['mean_forces'][rows]
+        swings.append(np.square(np.diff(means, 2, axis=1)).max())
+    early, late = (math.sqrt(np.mean(own)) for own in (swings[:200], swings[-200:]))
+    assert early > 50.0
+    assert late < 0.02 * early
 
 
 def test_energy_closes_over_oil_actuators_trunk_and_ground() -> None:

@@ -5,6 +5,7 @@ import math
 
 from isa_ros.core.noise import noise_key
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
+from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, LegPose
 from isa_ros.surroundings.bodies.robot.robot import Robot
@@ -24,7 +25,12 @@ PORT = ('x0', 'v0', 'a0', 'inverse_mass', 'a_bias', 'jerk', 'stiffness', 'dampin
 
 @cache
 def drop() -> tuple[Leg, Robot, np.ndarray, np.ndarray, list[np.void], list[np.void]]:
-    """Return both after the drop, their ports (ticks, 3), and their samples."""
+    """
+    Return both after the drop, their ports (ticks, 3), and their samples.
+
+    The forces are continuous and grow evenly within a tick: there L16 of the leg and L32 of the
+    tree, whose actuators have no moving mass, are the same line.
+    """
     key = noise_key(0, 'calf/imu')
     imu = Imu(link='calf', rate_hz=1000.0, x_mm=100.0, y_mm=-20.0, z_mm=30.0, gyro_bias=0.1,
               gyro_sigma=0.01, accelerometer_bias=-0.2, accelerometer_sigma=0.3)
@@ -36,14 +42,17 @@ def drop() -> tuple[Leg, Robot, np.ndarray, np.ndarray, list[np.void], list[np.v
             'calf', 4, (0.1, -0.02, 0.03), UPRIGHT, 0.3, -0.2, 0.01, 0.1, 2 * TICK_NS, key)])
     start, hold = np.array(leg.actuator_positions), np.array(leg.actuator_forces)
     ports, samples = np.zeros((2, TICKS, 3), LOAD_PORT), ([], [])
-    replies = np.zeros(3, LOAD_REPLY)
+    replies, middles = np.zeros(3, LOAD_REPLY), (np.arange(FORCE_WINDOWS) + 0.5) / FORCE_WINDOWS
+    replies['force'] = hold
     for tick in range(TICKS):
         leg.ports(ports[0, tick])
         robot.ports(ports[1, tick])
         own = ports[0, tick]
         force = (hold + (300.0, 1e5, 1e5) * (start - own['x0'])
                  - np.array((20.0, 4e3, 4e3)) * own['v0'])
-        replies['mean_forces'], replies['force'] = force[:, None], force
+        before = replies['force'].copy()
+        replies['mean_forces'] = before[:, None] + np.outer(force - before, middles)
+        replies['force'] = force
         for body, kept in zip((leg, robot), samples):
             body.advance(replies)
             kept.append(body.sample[0].copy())
