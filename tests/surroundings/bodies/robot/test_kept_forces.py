@@ -174,3 +174,15 @@ def test_a_run_gives_its_robot_the_moving_parts_of_its_actuators() -> None:
     ports = np.zeros(len(run.configuration.actuators), LOAD_PORT)
     body.ports(ports)
     assert drives['inverse_mass'].tolist() == ports['inverse_mass'][body.rows].tolist()
+
+
+def test_a_robot_continues_the_line_of_its_last_tick() -> None:
+    """Without moving mass: forces that grew evenly by 80 N go on from where they ended."""
+    robot, replies = Robot(boom(1), RobotStart(joints=(0.0,)), 1_000_000), np.zeros(1, LOAD_REPLY)
+    [hold] = robot.actuator_forces
+    replies['mean_forces'] = hold + 80.0 * (np.arange(FORCE_WINDOWS) + 0.5) / FORCE_WINDOWS
+    replies['force'] = hold + 80.0
+    robot.advance(replies)
+    kept = kept_part(robot._state, 1)
+    assert kept.slope[0] == pytest.approx(80.0 / TICK, rel=1e-9)
+    assert kept.force[0] == pytest.approx(hold + 80.0, rel=1e-12)
