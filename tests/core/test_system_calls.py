@@ -8,9 +8,10 @@ import time
 
 from isa_ros.core.kernel import IS_COMPILED, kernel
 from isa_ros.core.system_calls import (
-    AT_ONCE, copy_memory, monotonic_ns, receive, send, system_calls)
+    AT_ONCE, can_wait, copy_memory, monotonic_ns, receive, send, SLICE_NS, system_calls, wake)
 import numpy as np
 import pytest
+from tests.run.sleeping import is_woken, LONG_S, sleep_at
 
 pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='they are machine code')
 
@@ -28,6 +29,11 @@ def sent(system, number, address, size, flags):
 @kernel
 def copied(system, target, source, size):
     copy_memory(system, target, source, size)
+
+
+@kernel
+def woken(system, address, most):
+    wake(system, address, most)
 
 
 @kernel
@@ -87,3 +93,31 @@ def test_memory_is_copied():
     system, source, target = system_calls(), np.arange(9.0), np.zeros(9)
     copied(system, target.ctypes.data + 8, source.ctypes.data + 16, 24)
     assert target.tolist() == [0.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.skipif(not can_wait(), reason='the call is that of Linux')
+def test_a_wait_at_memory_ends_where_the_number_is_another_one():
+    """At once, or when it is woken; or else after a moment."""
+    numbers = np.array([3, -5], np.int32)
+    address = numbers[1:].ctypes.data
+    found, spent_s = sleep_at(address, 3, LONG_S)
+    assert found and spent_s < 0.5 * LONG_S
+    found, spent_s = sleep_at(address, -5)
+    assert not found and spent_s >= 1e-9 * SLICE_NS
+
+    def change() -> None:
+        numbers[1] = 7
+        woken(system_calls(), address, 1)
+    assert is_woken(address, -5, change)
+
+
+@pytest.mark.skipif(not can_wait(), reason='the call is that of Linux')
+def test_who_is_woken_for_nothing_waits_on():
+    numbers = np.array([4], np.int32)
+    address = numbers.ctypes.data
+
+    def change_later() -> None:
+        woken(system_calls(), address, 1)
+        numbers[0] = 5
+        woken(system_calls(), address, 1)
+    assert is_woken(address, 4, change_later)
