@@ -28,6 +28,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.answer_loop import AnswerLoop
+from isa_ros.run.wire.board import bell_of, no_board, ring_all
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.tick.source import ScheduledSource
@@ -113,7 +114,8 @@ def _ticks_of(name: str) -> None:
     for actuator in warmed_up(run)[:1]:
         AnswerLoop(actuator.ticked, actuator.advance, _LARGEST)
     own = isa_ros.load(name)
-    TickRound(own.simulation().loop.rows, 1, [], False, _LARGEST)
+    TickRound(own.simulation().loop.rows, 1, [], False, _LARGEST, no_board())
+    bell_of(ring_all, no_board())
     own.simulate(_TICKS * run.step_ns / NS_PER_SECOND)
     for path in shipped(SCENARIOS).values():
         with suppress(ConfigError):     # it is for actuators of another configuration

@@ -11,10 +11,11 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.nodes.lockstep import coordinator_end as lockstep
+from isa_ros.nodes.lockstep import coordinator_end as lockstep, socket_rounds, steady_ticks
 from isa_ros.nodes.lockstep.socket_rounds import _RECEIVE, _SEND, RoundEnds
 from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.provenance import provenance_of
+from isa_ros.run.wire.board import are_possible
 from isa_ros.scripting.run import load
 from isa_ros.tick.exchange import Rows
 from isa_ros.tick.source import ScheduledSource
@@ -126,6 +127,25 @@ def delay_first(loop: TickLoop, robot: Robot) -> None:
     delay(loop, robot, slice(1))
 
 
+def hang_up(loop: TickLoop, robot: Robot) -> None:
+    """Let one actuator end its connection before it answers, with a ring."""
+    robot.transport._next_check = time.monotonic() + DEADLINE_S
+    end = robot.ends[1]
+    serve = end._role.serve
+
+    def last() -> None:
+        end._role.serve = serve
+        end._wire.close()
+        serve()
+    end._role.serve = last
+
+
+def vanish(loop: TickLoop, robot: Robot) -> None:
+    """Let it do so as one whose process is killed."""
+    hang_up(loop, robot)
+    robot.ends[1]._wire.ring = lambda: None
+
+
 def shut(loop: TickLoop, robot: Robot) -> None:
     """End the connection of one actuator."""
     robot.transport._next_check = time.monotonic() + DEADLINE_S
@@ -139,17 +159,44 @@ def close_ours(loop: TickLoop, robot: Robot) -> None:
     ours._ends[ours.numbers()[0]].shutdown(socket.SHUT_RD)
 
 
-@pytest.mark.parametrize(('work', 'place'), [
-    (delay, _RECEIVE), (delay_first, _RECEIVE), (shut, _SEND), (close_ours, _RECEIVE)])
-def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
-        tmp_path, observer, places, expected, monkeypatch, work, place):
-    """Late answers, and connections that are lost: the same bytes by the topics, at once."""
+@pytest.fixture(params=['board', 'sockets'])
+def carrier(request, monkeypatch) -> str:
+    """Let actuators look often at what has arrived, and return where they get their ticks."""
     monkeypatch.setattr(lockstep, 'REPEAT_S', 1e6)
+    monkeypatch.setattr(steady_ticks, 'QUIET_NS', 1_000_000)
+    if request.param == 'sockets':
+        monkeypatch.setattr(socket_rounds, 'are_possible', lambda: False)
+    elif not are_possible():
+        pytest.skip('a board needs Linux')
+    return request.param
+
+
+@pytest.mark.parametrize(('work', 'place'), [
+    (delay, _RECEIVE), (delay_first, _RECEIVE), (hang_up, _RECEIVE), (vanish, _RECEIVE)])
+def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
+        tmp_path, observer, expected, carrier, places, work, place):
+    """
+    Late answers, and actuators that leave: the same bytes, then by the topics, at once.
+
+    On a busy host it may happen in a tick that Python has begun: then once more.
+    """
+    for k in range(5):
+        assert bag_of(tmp_path / str(k), observer, (30,), once(40, work)) == expected
+        if place in places:
+            return
+    raise AssertionError(places)
+
+
+@pytest.mark.parametrize(('work', 'place'), [(shut, _SEND), (close_ours, _RECEIVE)])
+def test_connections_that_are_lost_matter_where_ticks_use_them(
+        tmp_path, observer, expected, carrier, places, work, place):
+    """At the board they are only for what is rare; a busy host makes some answers late there."""
     assert bag_of(tmp_path / 'bag', observer, (30,), once(40, work)) == expected
-    assert place in places
+    assert place in places or carrier == 'board'
 
 
-def test_an_answer_with_a_changed_parameter_is_left_to_python(tmp_path, observer, places):
+def test_an_answer_with_a_changed_parameter_is_left_to_python(
+        tmp_path, observer, carrier, places):
     """On a busy host it may come in a tick that Python has begun: then once more."""
     def tune(loop: TickLoop, robot: Robot) -> None:
         robot.transport._next_check = time.monotonic() + DEADLINE_S

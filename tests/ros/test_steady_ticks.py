@@ -7,9 +7,11 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.actuator.node import _APPLIED
 from isa_ros.nodes.lockstep import (
-    coordinator_end as lockstep, participant_end as participant, steady_ticks as steady)
+    coordinator_end as lockstep, participant_end as participant, socket_rounds,
+    steady_ticks as steady)
 from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
 from isa_ros.nodes.middleware.qos import KEPT
+from isa_ros.run.wire.board import are_possible
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_tick
 from msg_adapters.cdr_reader import decode
@@ -54,6 +56,19 @@ def test_a_run_is_the_same_with_and_without_the_loop(observer, looped):
         assert [robot.tick(k, target(k)) for k in range(80)] == expected
         robot.transport.close()
     assert sum(looped) > 2 * 60
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_a_run_at_the_board_is_the_same_as_by_socket(observer, looped, monkeypatch):
+    """At the board from the first ticks on, those that Python answers too."""
+    found, posted = [], []
+    for is_at_board in True, False:
+        monkeypatch.setattr(socket_rounds, 'are_possible', lambda at=is_at_board: at)
+        with driven(observer) as robot:
+            found.append([robot.tick(k, target(k)) for k in range(80)])
+            posted.append(int(robot.transport._rounds._board.head['posted'][0]))
+            robot.transport.close()
+    assert found[0] == found[1] and posted[0] > 60 and posted[1] == 0
 
 
 def test_a_repeated_step_is_answered_again_without_another_tick(observer, looped, monkeypatch):
@@ -129,9 +144,9 @@ def test_the_rounds_of_the_coordinator_are_those_of_python(observer, monkeypatch
     monkeypatch.setattr(TickRound, 'take', note)
     monkeypatch.setattr(lockstep, 'TOPIC_CHECK_S', 100.0)
     results = []
-    for are_possible in True, False:
+    for are_rounds in True, False:
         with driven(observer) as robot:
-            robot.transport._rounds._are_possible = are_possible
+            robot.transport._rounds._are_possible = are_rounds
             results.append([robot.tick(k, target(k)) for k in range(50)])
             robot.transport.close()
         assert 40 <= len(taken) <= 50   # all but those with a changed parameter and the first

@@ -10,6 +10,7 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, WAS_REFUSED
 from isa_ros.nodes.lockstep.sockets import LARGEST
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.board import Board, no_board
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.steps import encode_tick
@@ -42,7 +43,7 @@ def made(has_feed: bool = False) -> Rows:
 class Bench:
     """The exchange of three actuators and a controller, and their ends."""
 
-    def __init__(self, has_feed: bool = False) -> None:
+    def __init__(self, has_feed: bool = False, board: Board | None = None) -> None:
         pairs = [socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET) for _ in range(N + 1)]
         self.ours, self.ends = zip(*pairs)
         for own in self.ours:
@@ -50,7 +51,8 @@ class Bench:
                 socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack('@ll', 0, SLICE_US))
         self.has_feed, self.rows = has_feed, made(has_feed)
         self.round = TickRound(
-            self.rows, RUN, [own.fileno() for own in self.ours], True, LARGEST)
+            self.rows, RUN, [own.fileno() for own in self.ours], True, LARGEST,
+            no_board() if board is None else board)
         assert self.round.send(TICK)
 
     def answer(self, k: int, data: bytes) -> None:
@@ -106,8 +108,9 @@ def test_a_step_is_byte_for_byte_that_of_python(has_feed):
     assert [end.recv(LARGEST) for end in bench.ends] == [expected] * (N + 1)
     assert bench.round.step() == expected
     assert not bench.round.is_too_large
-    assert TickRound(bench.rows, RUN, [], True, len(expected) - 1).is_too_large
-    assert not TickRound(bench.rows, RUN, [], True, len(expected)).is_too_large
+    for less in 0, 1:
+        too_large = TickRound(bench.rows, RUN, [], True, len(expected) - less, no_board())
+        assert too_large.is_too_large == less
     closed(bench)
 
 

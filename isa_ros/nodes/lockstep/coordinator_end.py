@@ -140,6 +140,7 @@ class LockstepTransport:
     def begin(self) -> None:
         """Make every participant publish its first messages."""
         self._wires.connect(self._answers.identities)
+        self._rounds.begin()
         self._announce()
 
     def _announce(self) -> None:
@@ -275,7 +276,7 @@ class LockstepTransport:
                 return data
             self._next_check = time.monotonic() + TOPIC_CHECK_S
             self._announce()
-        data = self._wires.wait(SLICE_S)
+        data = self._rounds.wait(SLICE_S)
         if data is None and not self._wires.is_open:
             self._repeat_step()  # an answer may have been lost with the sockets
         return data

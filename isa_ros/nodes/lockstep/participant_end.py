@@ -39,7 +39,7 @@ class ParticipantEnd:
     its coordinator has sent nothing for `SILENCE_S`; a later message of the same coordinator
     continues the run. The middleware's graph is not enough: it lists a killed node for a lease.
 
-    ``ticks`` answers what comes by socket and needs nothing else; None: all is done here.
+    ``ticks`` answers what comes on the wire and needs nothing else; None: all is done here.
     """
 
     def __init__(
@@ -66,8 +66,7 @@ class ParticipantEnd:
         self._close_wire()
         self._run_id = 0  # 0: bound to no run
         self._external: Sequence[str] = ()  # bodies of the run that any simulator may compute
-        self._index = self._n_participants = self._next_tick = 0
-        self._request = 0  # number of the last request; they decrease
+        self._index = self._n_participants = self._next_tick = self._request = 0
         self._has_begun = self._is_abandoned = False
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
@@ -110,7 +109,8 @@ class ParticipantEnd:
             if (data := self._mailbox.take()) is not None:
                 return data
             self._next_check = time.monotonic() + TOPIC_CHECK_S
-        data = wire.wait() if ticks is None or not are_next else self._after_ticks(ticks, wire)
+        data = wire.wait() if ticks is None else (
+            self._after_ticks(ticks, wire) if are_next else ticks.wait(wire))
         if not wire.is_open:
             self._close_wire()
         return data
@@ -201,9 +201,8 @@ class ParticipantEnd:
     def _is_past(self, step: Step) -> bool:
         if step.kind is StepKind.TICK:
             return step.tick < self._next_tick
-        if step.kind in (StepKind.SAVE, StepKind.RESTORE, StepKind.CHANGE):
-            return step.tick >= self._request
-        return False
+        return step.tick >= self._request and step.kind in (
+            StepKind.SAVE, StepKind.RESTORE, StepKind.CHANGE)
 
     def _answer_hello(self, step: Step) -> None:
         if step.run_id != self._run_id:
@@ -253,6 +252,8 @@ class ParticipantEnd:
     def _begin(self) -> None:
         if not self._has_begun:
             self._has_begun = True
+            if self._wire is not None:
+                self._wire.welcomed()
             self._role.publish()
 
     def _repeat(self, step: Step) -> None:
@@ -289,7 +290,7 @@ class ParticipantEnd:
 
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
         self._answered, self._last = (step.kind, step.tick), (kind, parts)
-        self._request = min(self._request, step.tick)
+        self._request = min(self._request, step.tick)   # numbers of requests decrease
         self._send_answer(encode_answer(kind, self._run_id, step.tick, self._index, parts))
 
     def _send_answer(self, answer: bytes) -> None:

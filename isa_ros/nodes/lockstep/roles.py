@@ -88,7 +88,9 @@ class ActuatorRole:
 
     def __init__(self, node: ActuatorNode) -> None:
         self._actuator = node.actuator
-        self._index = self._n_actuators = 0
+        self._n_actuators = 0
+        self.index = 0
+        """Its row in the run."""
         self.has_feed = False
         """Whether the supplies of its run have ports."""
         self._changes: Mapping[str, float] = {}
@@ -99,28 +101,28 @@ class ActuatorRole:
 
     def start(self, step: Step, index: int) -> Parts:
         """Start at rest, at t = 0, from its `START` row."""
-        self._index, self._n_actuators = index, step.rows
+        self.index, self._n_actuators = index, step.rows
         self.has_feed = step.roster().has_supply_ports
         self._actuator.start(*step.start(index).item())
         return self.parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick of another number of actuators, or with invalid numbers."""
-        step.refuse_tick(self._n_actuators, self._index)
+        step.refuse_tick(self._n_actuators, self.index)
         if self.has_feed:
-            step.refuse_feed(self._index)
+            step.refuse_feed(self.index)
 
     def advance(self, step: Step) -> Parts:
         """Advance one tick with its row of ports and commands, and the changes before it."""
         if self._changes:   # after `serve`: the scenario wins over other requests
             self._actuator.tune(self._changes)
             self._changes = {}
-        command = step.command(self._index)
+        command = step.command(self.index)
         if command['kinds']:
             self._actuator.accept(command)
         if self.has_feed:
-            self._actuator.memory.feeds[0] = step.feed(self._index)
-        self._actuator.tick(step.port(self._index))
+            self._actuator.memory.feeds[0] = step.feed(self.index)
+        self._actuator.tick(step.port(self.index))
         return self.parts()
 
     @property

@@ -1,12 +1,14 @@
-"""The coordinator's ticks over sockets, in compiled code as far as nothing is unusual."""
+"""The coordinator's ticks over sockets and the board, compiled as far as nothing is unusual."""
 
 from collections.abc import Callable
+import os
 
 from isa_ros.core.bound import nothing, Part
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.nodes.lockstep import sockets
 from isa_ros.nodes.lockstep.expected import Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
+from isa_ros.run.wire.board import are_possible, bell_of, new_board, no_board, ring_all
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.tick.exchange import Rows
 
@@ -59,12 +61,25 @@ class SocketRounds:
     def __init__(self, wires: LocalWires, participants: Participants) -> None:
         self._wires = wires
         self._has_controllers = participants.has_controllers
+        self._n_actuators = len(participants.starts)
         self._are_possible = IS_COMPILED and (
             participants.first_remote == 0 < len(participants.starts))
         self._run_id = 0
         self._round: TickRound | None = None
         self._ends: RoundEnds | None = None
         self._is_sent = False
+        self._board = no_board()
+        self._late: list[bytes] = []
+
+    def begin(self) -> None:
+        """Offer a board to the participants of a run that are connected."""
+        self._board, file, self._late, self._is_sent = no_board(), None, [], False
+        if self._are_possible and self._wires.is_open and are_possible():
+            self._board, file = new_board(self._n_actuators, sockets.LARGEST)
+            self._wires.ring = bell_of(ring_all, self._board)
+        self._wires.welcome(file)
+        if file is not None:
+            os.close(file)
 
     def ends(self, run_id: int, end: Callable[[int, bool], None]) -> RoundEnds | None:
         """Return what carries out quiet ticks, once a round of the run was sent to all."""
@@ -90,7 +105,8 @@ class SocketRounds:
         this = self._round
         if this is None or this.rows is not rows or self._run_id != run_id:
             this = self._round = TickRound(
-                rows, run_id, self._wires.numbers(), self._has_controllers, sockets.LARGEST)
+                rows, run_id, self._wires.numbers(), self._has_controllers, sockets.LARGEST,
+                self._board)
             self._run_id, self._ends = run_id, None
         if this.is_too_large:
             return False
@@ -109,6 +125,18 @@ class SocketRounds:
             return []
         return None if self._round.receive() else self._round.received()
 
+    def wait(self, timeout_s: float) -> bytes | None:
+        """Return the next answer at the board or by socket; None: none came, as `wires.wait`."""
+        this = self._round
+        if not self._late:
+            if this is None or not (self._is_sent and this.is_awaiting):
+                return self._wires.wait(timeout_s)
+            this.listen()
+            if (data := self._wires.wait(0.0)) is not None:
+                return data
+            self._late = this.late()
+        return self._late.pop() if self._late else self._wires.wait(0.0)
+
     def take(self) -> None:
         """Fill the rows from the answers."""
         if self._round is not None:
@@ -122,4 +150,5 @@ class SocketRounds:
 def warm_up_rounds(rows: Rows) -> None:
     """Compile the rounds over such rows, or load them from the cache."""
     if IS_COMPILED and sockets.is_possible():
-        TickRound(rows, 1, [], False, sockets.LARGEST)
+        TickRound(rows, 1, [], False, sockets.LARGEST, no_board())
+        bell_of(ring_all, no_board())

@@ -4,10 +4,12 @@ The private wire on one host: a Unix socket to each participant.
 The bytes are those of the wire's topics, but a tick takes half the time: the kernel wakes the
 receiver directly, without a thread of the middleware. The socket's name is abstract and contains
 the run's id: only processes of the same network namespace can connect, and no file remains. If
-the sockets fail for any reason, the run continues on the topics.
+the sockets fail for any reason, the run continues on the topics. The first message of the
+coordinator brings the file of the run's board (`isa_ros.run.wire.board`), where ticks take less
+than by socket.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import os
 import select
 import socket
@@ -16,11 +18,13 @@ import sys
 
 from isa_ros.nodes.middleware.handles import has_handles
 from isa_ros.nodes.middleware.mailboxes import SLICE_S
+from isa_ros.run.wire.board import board_of, no_board
 
 LARGEST = 65536
 """Bytes of the largest message."""
 
 _IDENTITY_BYTES = 64  # largest size
+_WELCOME = b'welcome'
 _MOST_REJECTED = 1000  # connections; with more of them a run uses the topics
 _TIME = struct.Struct('@ll')  # struct timeval
 _CREDENTIALS = struct.Struct('@iII')  # struct ucred: process, user, group
@@ -60,6 +64,10 @@ class LocalWire:
     def __init__(self, end: socket.socket) -> None:
         self._socket = end
         self.is_open = True
+        self.ring: Callable[[], object] = lambda: None
+        """Wakes a coordinator that waits at the board, after a message and at the end."""
+        self.board = no_board()
+        """That of the run, once it has welcomed."""
 
     @staticmethod
     def to_run(run_id: int, identity: bytes, slice_s: float) -> 'LocalWire | None':
@@ -80,6 +88,21 @@ class LocalWire:
     def number(self) -> int:
         """Return the file descriptor; below 0: closed."""
         return self._socket.fileno()
+
+    def welcomed(self) -> None:
+        """Receive the first message, with the board of the run if it has one."""
+        files: list[int] = []
+        try:
+            data, files, _, _ = socket.recv_fds(
+                self._socket, len(_WELCOME), 1, socket.MSG_DONTWAIT)
+            if files:
+                self.board = board_of(files[0], LARGEST)
+        except OSError:
+            data = b''
+        for file in files:
+            os.close(file)
+        if data != _WELCOME:
+            self.close()
 
     def wait(self) -> bytes | None:
         """Return the next message; None after the timeout, or if the socket is closed."""
@@ -110,12 +133,14 @@ class LocalWire:
         except OSError:
             self.close()
             return False
+        self.ring()
         return True
 
     def close(self) -> None:
         """Close the socket; the kernel informs the coordinator."""
         self.is_open = False
         self._socket.close()
+        self.ring()
 
 
 class LocalWires:
@@ -126,6 +151,8 @@ class LocalWires:
         self._ends: dict[int, socket.socket] = {}  # by file descriptor
         self._numbers: dict[int, int] = {}  # file descriptor by participant
         self._ready: list[int] = []
+        self.ring: Callable[[], object] = lambda: None
+        """Wakes participants that wait at the board, after a message and at the end."""
         if is_possible():
             self._epoll = select.epoll()
 
@@ -173,6 +200,14 @@ class LocalWires:
             self.close()
         return self.is_open
 
+    def welcome(self, file: int | None) -> None:
+        """Send the first message to all, with the file of the board; None: the run has none."""
+        try:
+            for end in self._ends.values():
+                socket.send_fds(end, [_WELCOME], [] if file is None else [file])
+        except OSError:
+            self.close()
+
     def numbers(self) -> list[int]:
         """Return the file descriptors in the order of the participants; they wait `SLICE_S`."""
         return [self._numbers[participant] for participant in sorted(self._numbers)]
@@ -183,6 +218,7 @@ class LocalWires:
             if len(message) <= LARGEST:
                 for end in self._ends.values():
                     end.send(message, socket.MSG_DONTWAIT)
+                self.ring()
                 return self.is_open
         except OSError:
             pass
@@ -218,6 +254,7 @@ class LocalWires:
         self._ends.clear()
         self._numbers.clear()
         self._ready.clear()
+        self.ring()
 
     def _stop_listening(self) -> None:
         if self._listening is not None:

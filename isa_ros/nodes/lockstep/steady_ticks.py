@@ -1,5 +1,7 @@
 """
-Ticks of an actuator's node that come by socket and change nothing else, in a compiled loop.
+Ticks of an actuator's node that need nothing of Python, in a compiled loop.
+
+They come at the board of the run, or by socket.
 
 Setpoints, requests and subscriptions are looked at before and after every tick while the node has
 a matched publisher of setpoints or a subscription; without any, before a tick once per `QUIET_NS`
@@ -42,10 +44,16 @@ class SteadyTicks:
         self._keeps = not node.actuator.has_link
         self._is_due = False
         self._due_ns = self._kept_due_ns = 0
+        self._wire: LocalWire | None = None
 
     def expect(self, step: Step, index: int) -> None:
         """Take steps like this one from now on, a tick that was checked and executed."""
         self._loop.expect(step, index, self._role.has_feed)
+
+    def wait(self, wire: LocalWire) -> bytes | None:
+        """Return the next message, of either; None: none has come for a while."""
+        self._loop_at(wire).run(wire.number, 0, 0, 1, keeps=False)  # each step is due
+        return self._loop.take_step() if self._loop.has_step else wire.take()
 
     def forget(self) -> None:
         """Take no step until one is executed by Python."""
@@ -71,9 +79,16 @@ class SteadyTicks:
         return self._run(wire, tick, due_ns, 1 if is_watched else MOST)
 
     def _run(self, wire: LocalWire, tick: int, due_ns: int, most: int) -> Ended:
-        ended = self._loop.run(wire.number, tick, due_ns, most, self._keeps)
+        ended = self._loop_at(wire).run(wire.number, tick, due_ns, most, self._keeps)
         self._is_due = ended is Ended.DUE
         return ended
+
+    def _loop_at(self, wire: LocalWire) -> AnswerLoop:
+        """Return the loop, which waits at the board that a wire has brought or at its socket."""
+        if wire is not self._wire:
+            self._wire, wire.ring = wire, self._loop.ring
+            self._loop.stand_at(wire.board, self._role.index)
+        return self._loop
 
     def end(self) -> None:
         """Move the actuator's time on by the ticks of `run`."""

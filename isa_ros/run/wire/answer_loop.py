@@ -11,6 +11,7 @@ from isa_ros.run.wire import steps
 from isa_ros.run.wire.answering import (
     answer_ticks, Answering, COMMAND_ROW, Ended, FEED, LOOP, PORT)
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.board import bell_of, Board, no_board, ring
 from isa_ros.run.wire.parts import actuator_parts, PARTS
 from isa_ros.run.wire.steps import Step
 from isa_ros.run.wire.words import ANSWER_HEAD, STEP_HEAD, WORD, words_of
@@ -40,7 +41,7 @@ class AnswerLoop:
         step = np.zeros(largest // WORD, np.uint32)
         longest = len(self._answer(0, 0, is_sent=True, has_feed=True))
         own = Answering(
-            np.zeros(1, LOOP), system_calls(), step, step.view(np.float64),
+            np.zeros(1, LOOP), system_calls(), no_board(), step, step.view(np.float64),
             np.zeros(STEP_HEAD, np.uint32), np.zeros((2, longest // WORD), np.uint32),
             _words(ticked.ports), _words(ticked.commands), _words(memory.feeds),
             _words(memory.replies), _words(memory.observed), _words(memory.applied),
@@ -51,8 +52,22 @@ class AnswerLoop:
         self._loop.step, self._loop.answers = step.ctypes.data, own.answers.ctypes.data
         self._loop.advance, self._loop.table = advance.address, advance.table.ctypes.data
         self._values = own.loop.view(np.int64).data    # faster than a record's fields
-        self._bound = Bound(answer_ticks, own)
         self._form: object = None   # of the steps that are expected
+        self.stand_at(own.board)
+
+    def stand_at(self, board: Board, slot: int = 0) -> None:
+        """Wait at a board from now on if it has such a slot, or else at the socket."""
+        if slot >= len(board.slots):
+            board, slot = no_board(), 0
+        self._own = self._own._replace(board=board)
+        self._loop.slot, self._loop.posted, self._loop.heard = slot, 0, 0
+        self._bound = Bound(answer_ticks, self._own)
+        self._ring = bell_of(ring, board)
+        board.slots['is_there'][slot] = 1
+
+    def ring(self) -> None:
+        """Wake a coordinator at the board: a message was sent to its socket."""
+        self._ring()
 
     def _answer(self, run_id: int, index: int, is_sent: bool, has_feed: bool) -> bytes:
         """Return an answer to tick 0."""

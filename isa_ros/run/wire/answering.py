@@ -1,5 +1,7 @@
 """
-An actuator's end of the wire as one compiled loop: receive a step, tick, send the answer.
+An actuator's end of the wire as one compiled loop: receive a step, tick, give the answer.
+
+A step comes from the board of the run or by socket, and the answer goes where it came from.
 
 The loop takes the steps that differ from the last one, which Python has checked, by their tick
 and their numbers only. It ends with what is left to Python, see `Ended`.
@@ -10,10 +12,12 @@ from typing import NamedTuple
 
 from isa_ros.core.device import is_status_due
 from isa_ros.core.kernel import kernel
-from isa_ros.core.pointers import call_at
+from isa_ros.core.pointers import call_at, load_at
 from isa_ros.core.signals import COMMAND, EVERY_KIND, LOAD_PORT, SUPPLY_PORT
-from isa_ros.core.system_calls import monotonic_ns, receive, send, SystemCalls
+from isa_ros.core.system_calls import (
+    copy_memory, monotonic_ns, receive, send, SystemCalls, wait_while)
 from isa_ros.core.timebase import PLANT_STEP_NS
+from isa_ros.run.wire.board import answer, Board
 from isa_ros.run.wire.parts import is_valid_command
 from isa_ros.run.wire.words import (
     ANSWER_HEAD, are_finite, begins_with, copy_words, STEP_HEAD, WORD, write_tick)
@@ -27,7 +31,7 @@ class Ended(IntEnum):
     """Why the loop has ended."""
 
     NOTHING = 1
-    """No message has arrived, or the socket is closed."""
+    """No message has arrived, or one by socket while the loop waits at the board."""
     DUE = 2
     """A step has arrived, and the time is over: Python looks at all else before it."""
     OTHER = 3
@@ -60,6 +64,10 @@ LOOP = np.dtype([
     ('broken', 'i8'),       # what the last tick returned
     ('keeps', 'i8'),        # whether a tick with a command does not end the loop
     ('kept', 'i8'),         # number of such ticks whose commands are kept
+    ('slot', 'i8'),         # at the board
+    ('posted', 'i8'),       # the last step there that was received, as its number
+    ('heard', 'i8'),        # messages by socket that the coordinator has rung for, so far
+    ('is_posted', 'i8'),    # whether the step that was received last was one of the board
 ])
 
 
@@ -69,6 +77,7 @@ class Answering(NamedTuple):
     loop: np.ndarray
     """`LOOP`, (1,)."""
     system: SystemCalls
+    board: Board
     step: np.ndarray
     """The step that was received last."""
     values: np.ndarray
@@ -98,6 +107,32 @@ class Answering(NamedTuple):
     """`COMMAND` that took effect and is not published yet, (m,)."""
     kept_at: np.ndarray
     """Plant step at the end of its tick, (m,)."""
+
+
+@kernel
+def next_message(own):
+    """
+    Wait for a message and return its bytes.
+
+    A number of 0 or below: none came, or the coordinator has rung for one by socket.
+    """
+    loop, board = own.loop[0], own.board
+    at, head = board.at[0], board.head[0]
+    loop.is_posted = 0
+    if at.bell == 0:
+        return receive(own.system, loop.socket, loop.step, WORD * len(own.step), 0)
+    while True:
+        rung, posted = load_at(at.bell), load_at(at.posted)
+        if posted != loop.posted:
+            loop.posted, loop.is_posted = posted, 1
+            size = min(head.size, WORD * len(own.step))
+            copy_memory(own.system, loop.step, at.step, size)
+            return size
+        if head.messages != loop.heard:
+            loop.heard = head.messages
+            return 0
+        if not wait_while(own.system, at.bell, rung):
+            return 0
 
 
 @kernel
@@ -136,6 +171,18 @@ def write_answer(is_sent, own):
 
 
 @kernel
+def give_answer(is_sent, own):
+    """Give the answer that was written; return a number below 0 if that failed."""
+    loop, size = own.loop[0], own.loop[0].sizes[is_sent]
+    if loop.is_posted:
+        copy_words(own.answers[is_sent], 0, own.board.answers[loop.slot], 0, size // WORD)
+        answer(own.system, own.board, loop.slot, loop.posted, size)
+        return 0
+    address = loop.answers + is_sent * WORD * own.answers.shape[1]
+    return send(own.system, loop.socket, address, size, 0)
+
+
+@kernel
 def has_news(own):
     """
     Return whether a tick has a message that is published in any case, and must be now.
@@ -164,7 +211,7 @@ def answer_ticks(own):
     loop.done = 0
     while loop.done < loop.most:
         if loop.received == 0:
-            found = receive(own.system, loop.socket, loop.step, WORD * len(own.step), 0)
+            found = next_message(own)
             if found <= 0:
                 return Ended.NOTHING.value
             loop.received = found
@@ -180,8 +227,7 @@ def answer_ticks(own):
         is_sent = 1 if own.sent[0].kinds else 0
         write_answer(is_sent, own)
         loop.tick += 1
-        if send(own.system, loop.socket, loop.answers + is_sent * WORD * own.answers.shape[1],
-                loop.sizes[is_sent], 0) < 0:
+        if give_answer(is_sent, own) < 0:
             return Ended.UNSENT.value
         if has_news(own):
             return Ended.ANSWERED.value

@@ -4,7 +4,7 @@ import struct
 
 from isa_ros.errors import RunError
 
-VERSION = 9
+VERSION = 10
 
 _ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
 _PREFIX_BYTES = 16

@@ -33,7 +33,8 @@ _LONGEST_NAME = 256
 _COUNT = 4  # bytes of a length
 _FLOAT = 8
 _APPLIED_AT = LOAD_REPLY.itemsize + SAMPLE.itemsize
-_ROWS = _APPLIED_AT + COMMAND.itemsize
+ROWS_BYTES = _APPLIED_AT + COMMAND.itemsize
+"""Of an actuator's answer: reply, sample and applied command."""
 PARTS = 3
 """Of an actuator's answer in a run whose supplies have no ports."""
 _LAST_STEP = 2**46  # of the plant: 44 years
@@ -68,7 +69,7 @@ def refuse_actuator_parts(parts: Parts) -> None:
 
     """
     rows, tuned, sent = parts[:PARTS] if PARTS <= len(parts) <= PARTS + 1 else (None,) * PARTS
-    if rows is None or len(rows) != _ROWS:
+    if rows is None or len(rows) != ROWS_BYTES:
         raise WireError('an answer that is not of an actuator')
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
         raise WireError('an answer of an actuator with a number that is not finite')

@@ -2,17 +2,22 @@
 
 from collections.abc import Iterator
 import secrets
+import threading
+import time
 
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import START
+from isa_ros.core.system_calls import SLICE_NS
 from isa_ros.nodes.lockstep import sockets
 from isa_ros.nodes.lockstep.expected import Expected, Participants
 from isa_ros.nodes.lockstep.socket_rounds import RoundEnds, SocketRounds
 from isa_ros.nodes.lockstep.sockets import LocalWire, LocalWires
+from isa_ros.run.wire.board import are_possible, Board
 from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import encode_tick
 import numpy as np
 import pytest
+from tests.run.boards import put, ring_coordinator
 from tests.run.filled import filled
 
 RUN = secrets.randbits(63)
@@ -147,3 +152,70 @@ def test_another_run_has_other_ends(wires, ends, rows):
     assert rounds.send(RUN + 5, 0, rows)
     other = rounds.ends(RUN + 5, lambda tick, is_unsent: None)
     assert other is not None and other is not made and other.parts != made.parts
+
+
+def welcomed(rounds: SocketRounds, ends: list[LocalWire]) -> list[Board]:
+    """Return the boards that the actuators have received; all of them are there."""
+    rounds.begin()
+    for k, end in enumerate(ends):
+        end.welcomed()
+        if k < 2 and end.board.at['bell'][0]:
+            end.board.slots['is_there'][k] = 1
+    return [end.board for end in ends]
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_actuators_get_their_steps_at_the_board(wires, ends, rows):
+    """Python waits for what is late at the board and by socket, and looks at both."""
+    rounds = SocketRounds(wires, participants())
+    first, second, _ = welcomed(rounds, ends)
+    assert rounds.send(RUN, 3, rows)
+    expected = encode_tick(RUN, 3, rows, True)
+    assert first.step.tobytes().startswith(expected) and ends[2].wait() == expected
+    put(second, 1, b'of kfe..')
+    assert ends[2].send(b'of the follower')
+    assert rounds.receive() == []
+    assert {rounds.wait(0.1), rounds.wait(0.1)} == {b'of kfe..', b'of the follower'}
+    begin = time.monotonic()
+    assert rounds.wait(0.1) is None
+    assert time.monotonic() - begin >= 1e-9 * SLICE_NS
+    put(first, 0, b'of haa..')
+    assert rounds.wait(0.1) == b'of haa..'
+    timer = threading.Timer(3e-9 * SLICE_NS, lambda: ends[2].send(b'later'))
+    timer.start()       # all have answered: it waits at the sockets, where nobody rings
+    assert rounds.wait(30.0) == b'later'
+    timer.join()
+    wires.close()
+    assert first.head['messages'] == 1 and ends[0].wait() is None
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_several_late_answers_are_returned_one_by_one(wires, ends, rows):
+    rounds = SocketRounds(wires, participants())
+    boards = welcomed(rounds, ends)
+    assert rounds.send(RUN, 3, rows)
+    for k, message in enumerate((b'of haa..', b'of kfe..')):
+        put(boards[k], k, message)
+    assert {rounds.wait(0.0), rounds.wait(0.0)} == {b'of haa..', b'of kfe..'}
+    assert rounds.wait(0.0) is None
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_an_answer_by_socket_is_not_kept_waiting_by_the_board(wires, ends, rows):
+    """It has rung before Python looks, as all answers that Python gives."""
+    rounds = SocketRounds(wires, participants())
+    boards = welcomed(rounds, ends)
+    assert rounds.send(RUN, 3, rows)
+    begin = time.monotonic()
+    for _ in range(20):
+        assert ends[1].send(b'of kfe')
+        ring_coordinator(boards[1])
+        assert rounds.wait(10.0) == b'of kfe'
+    assert time.monotonic() - begin < 20 * 1e-9 * SLICE_NS
+
+
+@pytest.mark.parametrize('run', [participants(2), participants(0, 0)])
+def test_without_rounds_there_is_no_board(wires, ends, rows, run):
+    for board in welcomed(SocketRounds(wires, run), ends):
+        assert board.at['bell'] == 0
+    assert wires.send(b'step') and ends[0].wait() == b'step'

@@ -8,6 +8,7 @@ import time
 
 from isa_ros.nodes.lockstep import sockets as local_wire
 from isa_ros.nodes.lockstep.sockets import LARGEST, LocalWire, LocalWires
+from isa_ros.run.wire.board import are_possible, new_board
 import pytest
 
 RUN = secrets.randbits(63)  # another suite on this host must not meet this one
@@ -226,3 +227,49 @@ def test_a_coordinator_leads_one_run_after_the_other(wires, ends):
     assert wires.connect(with_others)
     assert wires.send(b'step') and end.wait() == b'step'
     end.close()
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux and machine code')
+def test_the_first_message_brings_the_board_of_the_run(wires, ends):
+    ours, file = new_board(2, LARGEST)
+    wires.welcome(file)
+    os.close(file)
+    for end in ends:
+        end.welcomed()
+        assert end.is_open and len(end.board.slots) == 2
+    ends[1].board.head['bell'] = 5
+    assert ours.head['bell'] == ends[0].board.head['bell'] == 5
+    assert wires.send(b'step') and [end.wait() for end in ends] == [b'step', b'step']
+
+
+@pytest.mark.skipif(not hasattr(os, 'memfd_create'), reason='such files are those of Linux')
+@pytest.mark.parametrize('is_file', [False, True])
+def test_without_a_board_ticks_go_by_socket(wires, ends, is_file):
+    """A run has none, or a file that is none."""
+    file = os.memfd_create('other') if is_file else None
+    n_files = len(os.listdir('/proc/self/fd'))
+    wires.welcome(file)
+    for end in ends:
+        end.welcomed()
+        assert end.board.at['bell'] == 0 and end.is_open != is_file
+    assert len(os.listdir('/proc/self/fd')) == n_files - 2 * is_file
+    if file is not None:
+        os.close(file)
+
+
+def test_one_that_is_not_welcomed_hangs_up(wires, ends):
+    assert wires.send(b'another')
+    for end in ends:
+        end.welcomed()
+        assert not end.is_open
+
+
+def test_both_ends_ring_after_a_message_and_at_their_end(wires, ends):
+    rung = []
+    wires.ring, ends[0].ring = lambda: rung.append('ours'), lambda: rung.append('theirs')
+    assert wires.send(b'step') and ends[0].send(b'answer')
+    assert rung == ['ours', 'theirs']
+    assert not ends[0].send(b'x' * (LARGEST + 1)) and rung == ['ours', 'theirs']
+    ends[0].close()
+    wires.close()
+    assert rung == ['ours', 'theirs', 'theirs', 'ours']

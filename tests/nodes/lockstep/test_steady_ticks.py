@@ -1,28 +1,32 @@
 """What a node does between the ticks of its compiled loop."""
 
 from collections.abc import Callable, Iterator
+import os
 
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.nodes.lockstep import steady_ticks as module
 from isa_ros.nodes.lockstep.sockets import LARGEST
-from isa_ros.nodes.lockstep.steady_ticks import MOST, SteadyTicks
+from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
 from isa_ros.run.wire.answer_loop import _DONE
 from isa_ros.run.wire.answering import Ended
 from isa_ros.run.wire.answers import decode_answer
+from isa_ros.run.wire.board import are_possible, new_board, no_board
 from isa_ros.run.wire.steps import decode_step
 import numpy as np
 import pytest
-from tests.run.answer_bench import Bench, closed, encoded, INDEX
+from tests.run.answer_bench import Bench, closed, encoded, INDEX, N
+from tests.run.boards import post_on, ring_actuators
 
 pytestmark = pytest.mark.skipif(not IS_COMPILED, reason='the loop is machine code')
 
 
 class Quiet:
-    """A node and its role, that count what they are asked to do."""
+    """A node, its role and its wire, that count what they are asked to do."""
 
     def __init__(self, bench: Bench) -> None:
         self.actuator, self.has_feed, self.number = bench.actuator, False, bench.end.fileno()
+        self.index, self.board = INDEX, no_board()
         self.watched = False
         self.served = 0
         self.published: list[object] = []
@@ -32,6 +36,9 @@ class Quiet:
     @property
     def is_settled(self) -> bool:
         return self.actuator.is_settled
+
+    def take(self) -> bytes:
+        return b'by socket'
 
     def is_watched(self) -> bool:
         return self.watched
@@ -81,10 +88,11 @@ def send(bench: Bench, *ticks: int) -> None:
 
 
 def test_nothing_is_looked_at_until_it_is_due(bench, node, ticks, monkeypatch):
-    send(bench, *range(5, 5 + MOST + 2))
-    assert ticks.run(node, 5) is Ended.ANSWERED and ticks.done == MOST
+    monkeypatch.setattr(module, 'MOST', 20)
+    send(bench, *range(5, 27))
+    assert ticks.run(node, 5) is Ended.ANSWERED and ticks.done == 20
     assert node.served == 1     # before the first tick
-    assert ticks.run(node, 5 + MOST) is Ended.NOTHING and ticks.done == 2
+    assert ticks.run(node, 25) is Ended.NOTHING and ticks.done == 2
     assert node.served == 1
     monkeypatch.setattr(module, 'QUIET_NS', 0)
     ticks._due_ns = 0
@@ -222,3 +230,31 @@ def test_behind_a_link_commands_are_not_kept():
     ticks.publish()
     assert node.published == [(1, False)]
     closed(bench)
+
+
+def test_what_is_not_for_the_loop_is_waited_for_too(bench, node, ticks):
+    """A step as it came; without one, what is at the socket."""
+    send(bench, 5, 6)
+    assert [ticks.wait(node), ticks.wait(node)] == [encoded(5), encoded(6)]
+    assert ticks.wait(node) == b'by socket' and not ticks.has_step
+    assert node.served == 0
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_it_waits_at_the_board_that_its_wire_has_brought(bench, node, ticks):
+    """At the slot of its row; at another wire's once it has that."""
+    node.board, file = new_board(N, LARGEST)
+    os.close(file)
+    for tick in 5, 6:
+        post_on(node.board, encoded(tick))
+        assert ticks.run(node, tick) in (Ended.NOTHING, Ended.ANSWERED) and ticks.done == 1
+    assert node.board.slots['is_there'].tolist() == [0, 1, 0]
+    post_on(node.board, encoded(7))
+    assert ticks.wait(node) == encoded(7)
+    ring_actuators(node.board)
+    assert ticks.wait(node) == b'by socket'
+    node.ring()
+    assert node.board.head['rings'][0] > 0
+    other = Quiet(bench)
+    send(bench, 7)
+    assert ticks.wait(other) == encoded(7)
