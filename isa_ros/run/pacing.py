@@ -10,7 +10,7 @@ from isa_ros.errors import ConfigError
 SLICE_S = 0.1  # longest sleep between two checks for a signal
 REPORT_PERIOD_S = 0.2
 LARGEST_LAG_S = 0.1     # at the end of a run; below this lag no warning is printed
-QUIET_S = 5e-3  # ticks without a look at what has arrived: the period of a node's services
+QUIET_S = 20e-3  # ticks without a look at what has arrived
 JOIN_TIMEOUT_S = 30.0  # longest wait for participants before tick 0
 
 STARTING, JOINING = 'starting', 'joining'

@@ -187,21 +187,21 @@ def stretches(stretch: QuietStretch, loop: Loop, n: int) -> list[int]:
 
 
 def test_a_stretch_of_quiet_ticks_grows_to_its_time_and_no_further():
-    """Of 0.3 ms each: 16 take 4.8 ms and stay, where 5 ms pass without a look at a service."""
+    """Of 1.2 ms each: 16 take 19 ms and stay, where 20 ms pass without a look at a service."""
     host = Host()
-    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    loop, stretch = Loop(host, 1.2e-3), QuietStretch(host.time)
     assert stretches(stretch, loop, 6) == [1, 2, 4, 8, 16, 16]
-    assert QUIET_S == 5e-3
-    loop.tick_s = 7e-4                      # a slower one: 16 take 11.2 ms, 8 5.6 ms and 7 4.9 ms
+    assert QUIET_S == 20e-3
+    loop.tick_s = 2.8e-3                    # a slower one: 16 take 45 ms, 8 22.4 ms and 7 19.6 ms
     assert stretches(stretch, loop, 4) == [16, 8, 7, 7]
-    loop.tick_s = 1.6e-4                    # 14 take 2.2 ms, and 31 4.96 ms
+    loop.tick_s = 6.4e-4                    # 14 take 9 ms, and 31 19.8 ms
     assert stretches(stretch, loop, 4) == [7, 14, 28, 31]
 
 
 def test_a_stretch_is_halved_at_most_by_a_host_that_was_busy():
     """Else the one after a pause of 1 s would be a single tick."""
     host = Host()
-    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    loop, stretch = Loop(host, 1.2e-3), QuietStretch(host.time)
     stretches(stretch, loop, 5)
     loop.tick_s = 1.0
     assert stretches(stretch, loop, 2) == [16, 8]
@@ -215,7 +215,7 @@ def test_a_stretch_that_takes_no_time_on_a_coarse_clock_grows():
 
 def test_a_stretch_that_was_cut_short_says_nothing_of_the_next_one():
     host = Host()
-    loop, stretch = Loop(host, 3e-4), QuietStretch(host.time)
+    loop, stretch = Loop(host, 1.2e-3), QuietStretch(host.time)
     for _ in range(3):
         stretch.advance(loop, 1000)
     loop.most = 2

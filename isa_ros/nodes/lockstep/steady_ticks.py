@@ -5,7 +5,7 @@ They come at the board of the run, or by socket.
 
 Setpoints, requests and subscriptions are looked at before and after every tick while the node has
 a matched publisher of setpoints or a subscription; without any, before a tick once per `QUIET_NS`
-of host time, and at the latest every `MOST` ticks. Applied setpoints, which the middleware keeps
+of host time. Applied setpoints, which the middleware keeps
 for later subscriptions, are handed to it every `KEPT_NS` and before all that Python handles; once
 a subscription is there, without a gap and at every tick.
 """
@@ -24,12 +24,11 @@ from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import Step
 import numpy as np
 
-QUIET_NS = 5_000_000
+QUIET_NS = 20_000_000
 """Host time between two looks at what may have arrived, without a matched publisher."""
 
-MOST = 20
-"""Ticks between two looks at the subscriptions of a node that has none."""
-
+MOST = 1000
+"""Ticks of a call; the fastest take longer than `QUIET_NS`."""
 
 KEPT_NS = 100_000_000
 """Host time between two times at which applied setpoints are published, without a subscription."""
