@@ -41,7 +41,7 @@ def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
     floor, own = outcomes.of(over(FLOOR, ours)), outcomes.of(ours)
     if not own:
         return []
-    rows = [speed_row(f'{before}isa_ros: Unix sockets, topics for subscribers', own)]
+    rows = [speed_row(f'{before}isa_ros: shared memory, topics for subscribers', own)]
     ratios = []
     for peer in installed():
         spec = over(peer, ours)
