@@ -113,6 +113,14 @@ def test_the_lengths_of_the_run_are_drawn_and_collide():
     assert robot.find("joint[@name='kfe_joint']/origin").get('xyz') == '0.4 0.0 0.0'
 
 
+def test_an_actuator_that_turns_its_joint_backwards_has_the_same_torque():
+    limits = []
+    for changes in ({}, {'leg.parameters.haa.sense': -1.0, 'leg.parameters.haa.offset_deg': 40.0}):
+        robot = ElementTree.fromstring(described(**changes)[1])
+        limits.append(float(robot.find("joint[@name='haa_joint']/limit").get('effort')))
+    assert limits[0] == limits[1] > 50.0
+
+
 def test_two_legs_have_links_of_their_own():
     """Joints have the names of joint_states; links those of frames, only the world is shared."""
     run = isa_ros.load(two_legs()).configuration
