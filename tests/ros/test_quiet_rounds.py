@@ -146,6 +146,12 @@ def vanish(loop: TickLoop, robot: Robot) -> None:
     robot.ends[1]._wire.ring = lambda: None
 
 
+def hang_up_sooner(loop: TickLoop, robot: Robot) -> None:
+    """Let it do so and answer at the board, before another one, which is late, has answered."""
+    delay_first(loop, robot)
+    hang_up(loop, robot)
+
+
 def shut(loop: TickLoop, robot: Robot) -> None:
     """End the connection of one actuator."""
     robot.transport._next_check = time.monotonic() + DEADLINE_S
@@ -172,7 +178,8 @@ def carrier(request, monkeypatch) -> str:
 
 
 @pytest.mark.parametrize(('work', 'place'), [
-    (delay, _RECEIVE), (delay_first, _RECEIVE), (hang_up, _RECEIVE), (vanish, _RECEIVE)])
+    (delay, _RECEIVE), (delay_first, _RECEIVE), (hang_up, _RECEIVE), (vanish, _RECEIVE),
+    (hang_up_sooner, _RECEIVE)])
 def test_a_tick_that_cannot_end_in_the_loop_is_ended_by_python(
         tmp_path, observer, expected, carrier, places, work, place):
     """

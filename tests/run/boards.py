@@ -56,7 +56,7 @@ def answer_on(board: Board, k: int) -> bytes | None:
     """Return the answer to the step that was posted last, None: it is not there."""
     if board.slots['answered'][k] != board.head['posted'][0]:
         return None
-    return board.answers[k].view(np.uint8)[:board.slots['size'][k]].tobytes()
+    return board.answers[k].view(np.uint8)[:board.slots['n_bytes'][k]].tobytes()
 
 
 def all_there(board: Board) -> bool:

@@ -112,7 +112,7 @@ def test_what_is_unusual_is_left_as_it_came(bench, message):
 def test_a_step_larger_than_its_memory_is_cut(bench):
     """Only a defect posts one."""
     bench.post(encoded(7))
-    bench.board.head['size'] = 2**30
+    bench.board.head['n_bytes'] = 2**30
     assert bench.run(7) is Ended.OTHER and len(bench.loop.take_step()) == LARGEST
 
 

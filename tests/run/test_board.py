@@ -35,7 +35,7 @@ def test_a_step_that_is_posted_is_there_for_all(boards):
         message += bytes(-len(message) % 4)
         post_on(ours, message)
         assert theirs.step.tobytes().startswith(message)
-        assert theirs.head['size'] == len(message)
+        assert theirs.head['n_bytes'] == len(message)
         assert theirs.head['posted'] == theirs.head['bell'] == count
         assert rings(theirs) == -N and theirs.head['messages'] == 0
 

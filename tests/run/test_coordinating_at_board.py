@@ -36,7 +36,7 @@ class AtBoard(Bench):
         put(self.theirs, k, data)
 
     def posted(self) -> bytes:
-        return self.theirs.step.view('u1')[:self.theirs.head['size'][0]].tobytes()
+        return self.theirs.step.view('u1')[:self.theirs.head['n_bytes'][0]].tobytes()
 
 
 @pytest.fixture
@@ -123,7 +123,7 @@ def test_an_answer_is_cut_at_the_end_of_its_slot(bench):
     """Only a defect has a longer one."""
     for k in range(N):
         bench.answer(k, encoded(k))
-    bench.theirs.slots['size'][1] = 2**30
+    bench.theirs.slots['n_bytes'][1] = 2**30
     assert not bench.round.receive()
     assert len(bench.round.received()[1]) == bench.board.answers[1].nbytes
 

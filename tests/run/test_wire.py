@@ -160,5 +160,5 @@ def test_a_begin_whose_parts_are_not_its_bytes_is_refused(participants):
     (decode_step, encode_end(5)),
     (decode_answer, encode_answer(AnswerKind.BUSY, 5, 1, 0, ()))])
 def test_another_version_is_refused(decode, data):
-    with pytest.raises(RunError, match='wire version = 10, must be'):
-        decode(data[:16] + b'\x0a' + data[17:])
+    with pytest.raises(RunError, match='wire version = 11, must be 10'):
+        decode(data[:16] + b'\x0b' + data[17:])

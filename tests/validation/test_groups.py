@@ -29,14 +29,16 @@ def as_shown(result: GroupResult, page: str) -> tuple[Entry, ...]:
     Return the entries, those beside an adaptive integration with the number that the page has.
 
     That integration keeps `TOLERANCE`, and its last digits are those of the host's BLAS: the page
-    and another processor may differ by so much, 1e-12 of 1e-11, and by no more.
+    and another processor may differ by so much, 1e-12 of 1e-11, and by no more. Where the flow has
+    kinks it is less exact: two processors were apart by 1e-11 of 3e-8, 3e-4 of the number.
     """
     entries = []
     for entry in result.entries:
-        if entry.name.endswith('_smooth'):
+        at_kinks = entry.name.endswith(('_sine', '_finer_steps'))
+        if at_kinks or entry.name.endswith('_smooth'):
             row = re.search(rf'^\| {result.group}\.{entry.name} \| (.*)', page, re.M)
             number = float(row[1].split(' | ')[3])
-            assert entry.ours == pytest.approx(number, rel=0.0, abs=TOLERANCE)
+            assert entry.ours == pytest.approx(number, rel=1e-3 * at_kinks, abs=TOLERANCE)
             entry = replace(entry, ours=number)
         entries.append(entry)
     return tuple(entries)

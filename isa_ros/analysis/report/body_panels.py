@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from isa_ros.analysis.report.panels import columns, Curve, Group, Panel
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.body_config import BODY, BodyConfig
-from isa_ros.surroundings.messages import JointStates
+from isa_ros.core.fields import Field
+from isa_ros.surroundings.messages import JOINT_STATES, JointStates
 import numpy as np
 
 _AXES: Mapping[int, Sequence[str]] = {3: 'xyz', 4: 'wxyz'}
@@ -29,7 +30,7 @@ def body_group(body: BodyConfig, signals: Signals) -> Group:
         if name not in signals:
             continue
         if field.shape:
-            panels += _vector(_joints_of(body, field.name, signals.run.step_ns), field.name,
+            panels += _vector(_joints_of(body, field, signals.run.step_ns), field.name,
                               signals.over_time(name), field.unit)
         else:
             scalars.setdefault((_kind(field.name), field.unit), []).append(field.name)
@@ -49,20 +50,30 @@ def _rank(panel: Panel) -> int:
     return 1 if 'force' in panel.title or 'torque' in panel.title else 2
 
 
-def _joints_of(body: BodyConfig, field: str, step_ns: int) -> list[str]:
-    """Return the joints that a field has a number of, as the messages of the body say."""
-    return [name.removesuffix('_joint').upper() for message in body.messages(step_ns)
-            if isinstance(message, JointStates)
-            for columns_of in (message.position, message.velocity, message.effort)
-            for name, column in zip(message.names, columns_of) if column.startswith(f'{field}[')]
+def _joints_of(body: BodyConfig, field: Field, step_ns: int) -> list[str]:
+    """
+    Return the joints of each number of a field, as the messages of the body say; none has any: [].
+
+    A number without one is called by its place. Joints that move together share one.
+    """
+    joints: dict[str, list[str]] = {}
+    for message in body.messages(step_ns):
+        if isinstance(message, JointStates) and message.topic.endswith(JOINT_STATES):
+            for columns_of in (message.position, message.velocity, message.effort):
+                for name, column in zip(message.names, columns_of):
+                    joints.setdefault(column, []).append(name.removesuffix('_joint').upper())
+    own = [f'{field.name}[{k}]' for k in range(field.shape[0])]
+    return [', '.join(joints.get(column, [str(k)])) for k, column in enumerate(own)] if (
+        joints.keys() & set(own)) else []
 
 
 def _vector(joints: Sequence[str], name: str, signal: Signal, unit: str) -> Iterator[Panel]:
     """Yield the panels of a field of several numbers; two units are two panels."""
     units, n = unit.split(', '), signal.values.shape[1]
     size = n // len(units)
-    labels = joints or _AXES.get(size, [str(k) for k in range(size)])
+    axes = _AXES.get(size, [str(k) for k in range(size)])
     for k, own in enumerate(units):
+        labels = joints[k * size:(k + 1) * size] or axes
         part = Signal(signal.t, signal.values[:, k * size:(k + 1) * size])
         words = f'{"joint " if joints else ""}{name}'.replace('_', ' ')
         yield _panel(f'{words}{_PARTS.get(own, "") if len(units) > 1 else ""}', own,

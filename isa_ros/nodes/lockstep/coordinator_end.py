@@ -277,8 +277,8 @@ class LockstepTransport:
             self._next_check = time.monotonic() + TOPIC_CHECK_S
             self._announce()
         data = self._rounds.wait(SLICE_S)
-        if data is None and not self._wires.is_open:
-            self._repeat_step()  # an answer may have been lost with the sockets
+        if not self._wires.is_open:
+            self._repeat_step()  # other answers may have been lost with sockets and board
         return data
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:

@@ -125,7 +125,7 @@ def next_message(own):
         rung, posted = load_at(at.bell), load_at(at.posted)
         if posted != loop.posted:
             loop.posted, loop.is_posted = posted, 1
-            size = min(head.size, WORD * len(own.step))
+            size = min(head.n_bytes, WORD * len(own.step))
             copy_memory(own.system, loop.step, at.step, size)
             return size
         if head.messages != loop.heard:

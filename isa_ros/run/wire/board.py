@@ -29,10 +29,10 @@ _MOST = 2**31 - 1
 LOUD = 2**20
 """More than there are actuators: awakes the coordinator before all have answered."""
 
-_BELL, _RINGS, _POSTED, _SIZE, _MESSAGES = 0, _LINE, 2 * _LINE, 2 * _LINE + 4, 2 * _LINE + 8
+_BELL, _RINGS, _POSTED, _N_BYTES, _MESSAGES = 0, _LINE, 2 * _LINE, 2 * _LINE + 4, 2 * _LINE + 8
 HEAD = np.dtype({
-    'names': ['bell', 'rings', 'posted', 'size', 'messages'], 'formats': ['<i4'] * 5,
-    'offsets': [_BELL, _RINGS, _POSTED, _SIZE, _MESSAGES], 'itemsize': 3 * _LINE})
+    'names': ['bell', 'rings', 'posted', 'n_bytes', 'messages'], 'formats': ['<i4'] * 5,
+    'offsets': [_BELL, _RINGS, _POSTED, _N_BYTES, _MESSAGES], 'itemsize': 3 * _LINE})
 """
 Of a board: both bells, and the counts of posted steps and of messages by socket.
 
@@ -40,7 +40,7 @@ Of a board: both bells, and the counts of posted steps and of messages by socket
 that it waits for as one below 0; from 0 on each ring wakes it.
 """
 SLOT = np.dtype({
-    'names': ['answered', 'size', 'is_there'], 'formats': ['<i4'] * 3, 'offsets': [0, 4, 8],
+    'names': ['answered', 'n_bytes', 'is_there'], 'formats': ['<i4'] * 3, 'offsets': [0, 4, 8],
     'itemsize': _LINE})
 """Of an actuator: the step that it has answered, the bytes, and whether it waits at the board."""
 _ANSWER = -(-(HEADER_BYTES + ROWS_BYTES + COMMAND.itemsize + SUPPLY_REPLY.itemsize + _LINE)
@@ -89,7 +89,7 @@ def post(system, board, address, size):
     """Post a step of so many bytes at an address for all actuators, and wake them."""
     at, head = board.at[0], board.head[0]
     copy_memory(system, at.step, address, size)
-    head.size, head.rings = size, -len(board.slots)
+    head.n_bytes, head.rings = size, -len(board.slots)
     add_at(at.posted, 1)
     add_at(at.bell, 1)
     wake(system, at.bell, _MOST)
@@ -100,7 +100,7 @@ def answer(system, board, k, posted, size):
     """Let the answer of actuator ``k`` to a posted step be there; the last one wakes."""
     at = board.at[0]
     answered = at.slots + k * _LINE
-    board.slots[k].size = size
+    board.slots[k].n_bytes = size
     add_at(answered, posted - load_at(answered))
     if add_at(at.rings, 1) >= 0:
         wake(system, at.rings, 1)

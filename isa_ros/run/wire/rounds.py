@@ -132,7 +132,7 @@ def collect(own):
     for k in range(len(own.received)):
         own.received[k] = 0
         if answered_by(board, k) == posted and own.collected[k] != posted:
-            size = min(board.slots[k].size, WORD * board.answers.shape[1])
+            size = min(board.slots[k].n_bytes, WORD * board.answers.shape[1])
             copy_words(board.answers[k], 0, own.answers[k], this.first, size // WORD)
             own.received[k], own.collected[k] = size, posted
             found += 1

@@ -53,6 +53,30 @@ def test_numbers_of_joints_are_named_as_the_messages_of_the_body_say():
     assert panel.label == 'position, deg' and [own.label for own in panel.curves] == ['0', '1']
 
 
+def test_a_number_may_be_of_two_joints_or_of_none():
+    """Of a mass that two actuators move, and of a wheel that no joint state has."""
+    states = JointStates('/joint_states', ['left_joint', 'right_joint', 'arm'],
+                         ['position[2]', 'position[2]', 'position[0]'], [], [])
+    panel, = group_of(Field('position', 'rad', '', (3,)), states=[states]).panels
+    assert [own.label for own in panel.curves] == ['ARM', '1', 'LEFT, RIGHT']
+
+
+def test_the_port_of_an_actuator_is_no_joint():
+    """Its message has the form of joint states, on a topic of its own."""
+    port = JointStates('/ram/load_port', ['ram', 'ram/acceleration'], ['port_x0[0]', 'port_a0[0]'],
+                       [], [])
+    panel, = group_of(Field('port_x0', 'm', '', (2,)), states=[port]).panels
+    assert panel.label == 'port x0, m' and [own.label for own in panel.curves] == ['0', '1']
+
+
+def test_joints_of_two_units_are_in_the_panels_of_theirs():
+    states = JointStates('/r1/joint_states', ['slide', 'turn_joint'],
+                         ['position[0]', 'position[1]'], [], [])
+    slide, turn = group_of(Field('position', 'm, rad', '', (2,)), states=[states]).panels
+    assert [own.label for own in slide.curves] == ['SLIDE']
+    assert [own.label for own in turn.curves] == ['TURN']
+
+
 def test_two_units_are_two_panels():
     """A wrench: force first, then its moment about the frame."""
     group = group_of(Field('lf_foot_wrench', 'N, Nm', '', (6,)))

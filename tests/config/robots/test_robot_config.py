@@ -33,7 +33,7 @@ def test_the_resolved_text_needs_no_urdf(runs, name, tmp_path, monkeypatch):
     """Every value bit for bit, and the same text and sheet of it."""
     text = runs[name].to_yaml()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr('isa_ros.config.runs.robot_config.find_drawing', None)
+    monkeypatch.setattr('isa_ros.config.robots.tree.find_drawing', None)
     found = run_of_text(text)
     assert found == runs[name]
     assert found.to_yaml() == text
