@@ -16,13 +16,22 @@ _SKIPPED = shutil.ignore_patterns('__pycache__')
 class PatchedCopy:
     """The package below a directory; ``touched`` are the files changed or added, sorted."""
 
-    def __init__(self, directory: Path) -> None:
-        self._root = directory / 'patched'
+    def __init__(self, directory: Path, source: Path = ROOT) -> None:
+        self.root = directory / 'patched'
+        """Of the copy."""
         for name in _COPIED:
-            shutil.copytree(ROOT / name, self._root / name, ignore=_SKIPPED)
-        shutil.copy(ROOT / 'package.xml', self._root)
-        shutil.copy(ROOT / 'pyproject.toml', self._root)
+            shutil.copytree(source / name, self.root / name, ignore=_SKIPPED)
+        shutil.copy(source / 'package.xml', self.root)
+        shutil.copy(source / 'pyproject.toml', self.root)
         self._touched: set[str] = set()
+
+    def reworded(self, directory: Path) -> 'PatchedCopy':
+        """Return a copy of this one in which all lines and docstrings are others."""
+        other = PatchedCopy(directory, self.root)
+        for path in other.root.rglob('*.py'):
+            words = re.sub(r'"""(?=[A-Z])', '"""Edited: ', path.read_text(encoding='utf-8'))
+            path.write_text(f'# A remark.\n\n{words}', encoding='utf-8')
+        return other
 
     @property
     def touched(self) -> list[str]:
@@ -39,40 +48,40 @@ class PatchedCopy:
 
     def replace(self, path: str, old: str, new: str) -> None:
         """Replace a text that a file has exactly once."""
-        text = (self._root / path).read_text(encoding='utf-8')
+        text = (self.root / path).read_text(encoding='utf-8')
         found = text.count(old)
         if found != 1:
             raise ValueError(f'{path} has {found} times, must have once: {old!r}')
-        (self._root / path).write_text(text.replace(old, new), encoding='utf-8')
+        (self.root / path).write_text(text.replace(old, new), encoding='utf-8')
         self._touched.add(path)
 
     def add(self, path: str, text: str) -> None:
         """Add a file that does not exist yet."""
-        with (self._root / path).open('x', encoding='utf-8') as file:
+        with (self.root / path).open('x', encoding='utf-8') as file:
             file.write(text)
         self._touched.add(path)
 
     def read(self, path: str) -> str:
         """Return the text of a file."""
-        return (self._root / path).read_text(encoding='utf-8')
+        return (self.root / path).read_text(encoding='utf-8')
 
     def isa(self, *arguments: str) -> str:
         """Return what `isa` prints."""
         return self._run('-m', 'isa_ros', *arguments)
 
-    def python(self, program: str) -> str:
-        """Return what a Python program prints."""
-        return self._run('-c', program)
+    def python(self, program: str, **environment: str) -> str:
+        """Return what a Python program prints, with variables of the environment."""
+        return self._run('-c', program, **environment)
 
     def script(self, path: str) -> str:
         """Return what a script of the copy prints."""
         return self._run(path)
 
-    def _run(self, *arguments: str) -> str:
+    def _run(self, *arguments: str, **environment: str) -> str:
         done = subprocess.run(
-            [sys.executable, *arguments], cwd=self._root, capture_output=True, text=True,
-            check=False, env={**os.environ, 'PYTHONPATH': os.pathsep.join(
-                [str(self._root), os.environ.get('PYTHONPATH', '')])})
+            [sys.executable, *arguments], cwd=self.root, capture_output=True, text=True,
+            check=False, env={**os.environ, **environment, 'PYTHONPATH': os.pathsep.join(
+                [str(self.root), os.environ.get('PYTHONPATH', '')])})
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 

@@ -5,6 +5,7 @@ The kernels of a copy compile for half a minute, so they compile once; and each 
 run beside the others.
 """
 
+from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.core.conditions import CONDITIONS
@@ -74,6 +75,20 @@ simulation.tune('ram', {'force.kp': 0.0})
 for _ in range(2):
     simulation.step()
 print(simulation.samples['ram']['spool_reference'])
+"""
+_STARTS = """
+import sys
+from numba.core.event import install_recorder
+from isa_ros.config.paths import CONFIG, shipped
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.run.warm_up import warmed_up
+import isa_ros
+with install_recorder('numba:compile') as compiled:
+    warmed_up(load_run(shipped(CONFIG)['rig_linear.yaml']))
+from isa_ros.actuator.ticking import tick_kernel
+print(isa_ros.__file__, [event.data['dispatcher'].__name__ for _, event in compiled.buffer],
+      bool(tick_kernel().compiled.stats.cache_hits))
+print([name for name in ('numba.np.arraymath', 'scipy.linalg') if name in sys.modules])
 """
 _STAYS = """
 from hashlib import sha256
@@ -165,3 +180,17 @@ def test_what_is_compiled_there_gives_the_same_bytes(
     """A run without the extensions: its tick is compiled in the copy, and in a library here."""
     exec(_STAYS, {})
     assert extended.copied.python(_STAYS) == capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_the_same_with_other_words_compiles_nothing(extended: Extended, tmp_path: Path) -> None:
+    """
+    Nor does a second start: a version of numba that cannot load what it kept shows here.
+
+    What only a compiler needs is not loaded either: half of the processor time of a start. A
+    setting of numba, which is its default, turns libraries off.
+    """
+    extended.copied.python(_STARTS, NUMBA_OPT='3')
+    other = extended.copied.reworded(tmp_path)
+    assert other.python(_STARTS, NUMBA_OPT='3') == (
+        f'{other.root}/isa_ros/__init__.py [] True\n[]\n')

@@ -1,36 +1,14 @@
 """The kernels of a run from the cache."""
 
-import os
-from pathlib import Path
-import re
-import shutil
 import signal
 import subprocess
 import sys
 
-import isa_ros
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.kernel import KernelEntry
 from isa_ros.run import warm_up
 import pytest
-
-PACKAGES = Path(isa_ros.__file__).parents[1]
-START = """
-import sys
-from numba.core.event import install_recorder
-from isa_ros.config.paths import CONFIG, shipped
-from isa_ros.config.runs.run_file import load_run
-from isa_ros.run.warm_up import warmed_up
-import isa_ros
-with install_recorder('numba:compile') as compiled:
-    for path in shipped(CONFIG).values():
-        warmed_up(load_run(path))
-from isa_ros.actuator.ticking import tick_kernel
-print(isa_ros.__file__, [event.data['dispatcher'].__name__ for _, event in compiled.buffer],
-      bool(tick_kernel().compiled.stats.cache_hits))
-print([name for name in ('numba.np.arraymath', 'scipy.linalg') if name in sys.modules])
-"""
 
 LEG = load_run(shipped(CONFIG)['leg.yaml'])
 SURROUNDINGS = """
@@ -45,34 +23,6 @@ compile_surroundings()
 from isa_ros.actuator.ticking import tick_kernel
 print(tick_kernel().compiled.signatures, *sorted(made))
 """
-
-
-@pytest.fixture
-def copy(tmp_path: Path) -> Path:
-    """Return a copy of the package in which all lines and docstrings are others."""
-    for name in ('isa_ros', 'msg_adapters'):
-        shutil.copytree(PACKAGES / name, tmp_path / name,
-                        ignore=shutil.ignore_patterns('__pycache__'))
-    for name in ('config', 'urdf'):
-        shutil.copytree(PACKAGES / name, tmp_path / name)
-    shutil.copy(PACKAGES / 'package.xml', tmp_path)
-    for file in tmp_path.rglob('*.py'):
-        text = file.read_text()
-        file.write_text('# A remark.\n\n' + re.sub(r'"""(?=[A-Z])', '"""Edited: ', text))
-    return tmp_path
-
-
-@pytest.mark.slow
-def test_a_copy_with_other_words_compiles_nothing(compiled_kernels: None, copy: Path) -> None:
-    """
-    Nor does a second start: a version of numba that cannot load what it kept shows here.
-
-    What only a compiler needs is not loaded either: half of the processor time of a start.
-    """
-    done = subprocess.run(
-        [sys.executable, '-c', START], cwd=copy, env=os.environ | {'PYTHONPATH': str(copy)},
-        capture_output=True, text=True, timeout=300.0)
-    assert (done.stdout, done.stderr) == (f'{copy}/isa_ros/__init__.py [] True\n[]\n', '')
 
 
 def test_another_process_compiles_the_surroundings_without_the_actuators() -> None:
