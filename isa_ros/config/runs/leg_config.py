@@ -11,7 +11,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import leg_section, material_section
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyInputs
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
-from isa_ros.config.runs.leg_description import urdf_of
+from isa_ros.config.runs.leg_description import DescribedLeg, urdf_of
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import (
@@ -183,7 +183,9 @@ class LegConfig(BodyConfig):
     def description(self, sheets: Mapping[str, ActuatorSheet], folder: Path,
                     control: Iterable[str] = ()) -> str:
         """Return its URDF, which is made from its sheet; as `BodyConfig.description`."""
-        return urdf_of(self, sheets, control)
+        own = DescribedLeg(self.model, self.prefix, self.sheet, self.joints,
+                           [(imu.name, imu.sheet) for imu in self.imus])
+        return urdf_of(own, sheets, control)
 
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return a line if the ticks are too long for the ground."""

@@ -13,7 +13,7 @@ cylinder and load cell are at the joint, in the axes of the link. Bodies are pla
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 import math
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
 from isa_ros.actuator.setpoint_range import setpoint_bounds
@@ -21,14 +21,12 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.core.elementary import atan2
 from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
+from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.messages import imu_frame, joint_name, SLIDER
-from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegLink
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegLink, LegSheet
 from isa_ros.surroundings.linkage import levers, rod_eye
 from isa_ros.surroundings.linkage_sheet import Direct, FourBar, Joint, linkage_record
 import numpy as np
-
-if TYPE_CHECKING:
-    from isa_ros.config.runs.leg_config import LegConfig
 
 WORLD = 'world'
 SPEED = 20.0            # rad/s: limit of a joint, assumed
@@ -48,8 +46,21 @@ _ALONG_X = (0.0, _HALF, 0.0)            # from the axis of a drawn cylinder, z
 _ALONG_Y = (_HALF, 0.0, 0.0)
 
 
+class DescribedLeg(NamedTuple):
+    """What is described of a leg."""
+
+    model: str
+    prefix: str
+    """Of its frames."""
+    sheet: LegSheet
+    joints: Sequence[tuple[str, str]]
+    """Each with its actuator."""
+    imus: Sequence[tuple[str, Imu]]
+    """Names and sheets of its inertial units."""
+
+
 def urdf_of(
-        leg: 'LegConfig', sheets: Mapping[str, ActuatorSheet],
+        leg: DescribedLeg, sheets: Mapping[str, ActuatorSheet],
         control: Iterable[str] = ()) -> str:
     """
     Return the URDF of a leg of a run; ``sheets`` are those of its actuators by name.
@@ -63,7 +74,7 @@ def urdf_of(
                       *_units(leg), *control, '</robot>', ''])
 
 
-def _bodies(leg: 'LegConfig', sheets: Mapping[str, ActuatorSheet]) -> Iterator[str]:
+def _bodies(leg: DescribedLeg, sheets: Mapping[str, ActuatorSheet]) -> Iterator[str]:
     """Yield slider, links and joints."""
     body, own = leg.sheet.body, leg.prefix
     places = _places(leg)
@@ -93,7 +104,7 @@ def _bodies(leg: 'LegConfig', sheets: Mapping[str, ActuatorSheet]) -> Iterator[s
     yield from _fixed('foot_joint', f'{own}calf', f'{own}foot', (body.calf.length_m, 0.0, 0.0))
 
 
-def _places(leg: 'LegConfig') -> dict[str, tuple[Vector, Vector]]:
+def _places(leg: DescribedLeg) -> dict[str, tuple[Vector, Vector]]:
     """Return place and turn of each joint on its parent."""
     body = leg.sheet.body
     return {'haa': (_ZERO, _FROM_BASE),
@@ -101,7 +112,7 @@ def _places(leg: 'LegConfig') -> dict[str, tuple[Vector, Vector]]:
             'kfe': ((body.thigh.length_m, 0.0, 0.0), _ZERO)}
 
 
-def _mounts(leg: 'LegConfig') -> Iterator[str]:
+def _mounts(leg: DescribedLeg) -> Iterator[str]:
     """Yield the frames of the actuators and of their load cells."""
     parents = {'haa': 'slider_link', 'hfe': 'hip', 'kfe': 'thigh'}
     for joint, actuator in leg.joints:
@@ -126,11 +137,11 @@ def _cylinder(sheet: FourBar, knee: Vector) -> tuple[Vector, Vector]:
     return (knee[0] - pin_x, knee[1] - sheet.sense * pin_y, knee[2]), (0.0, 0.0, angle)
 
 
-def _units(leg: 'LegConfig') -> Iterator[str]:
+def _units(leg: DescribedLeg) -> Iterator[str]:
     """Yield the frames of the inertial units, at their places in the axes of their links."""
-    for imu in leg.imus:
-        own, frame = imu.sheet, imu_frame(leg.prefix, imu.name)
-        yield from _fixed(f'{imu.name}_imu_mount', f'{leg.prefix}{own.link}', frame,
+    for name, own in leg.imus:
+        frame = imu_frame(leg.prefix, name)
+        yield from _fixed(f'{name}_imu_mount', f'{leg.prefix}{own.link}', frame,
                           (own.x_mm * MILLI, own.y_mm * MILLI, own.z_mm * MILLI))
 
 

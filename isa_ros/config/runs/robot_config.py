@@ -261,7 +261,7 @@ class RobotConfig(BodyConfig):
     def description(self, sheets: Mapping[str, ActuatorSheet], folder: Path,
                     control: Iterable[str] = ()) -> str:
         """Return the URDF of its file; as `BodyConfig.description`."""
-        return description_of(self, folder, control)
+        return description_of(self.urdf, self.prefix, self.drives, folder, control)
 
     def messages(self, step_ns: int) -> Sequence[BodyMessage]:
         """Return joints, pose of a free root, forces on the feet, readings of its units."""

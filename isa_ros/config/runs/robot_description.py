@@ -6,26 +6,24 @@ keep their names. Each actuator and its load cell have frames, fixed to the link
 cylinder: at the joint of a linkage, at the pin of a cylinder between two links.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from isa_ros.config.paths import find_drawing
 from isa_ros.config.robots.drives import CylinderBetweenLinks, DriveConfig
 from isa_ros.core.units import MILLI
 
-if TYPE_CHECKING:
-    from isa_ros.config.runs.robot_config import RobotConfig
-
 Element = ElementTree.Element
 
 
-def description_of(robot: 'RobotConfig', folder: Path, control: Iterable[str] = ()) -> str:
+def description_of(
+        urdf: str, prefix: str, drives: Sequence[DriveConfig], folder: Path,
+        control: Iterable[str] = ()) -> str:
     """
-    Return the description of a robot whose run file is in ``folder``.
+    Return the description of a robot by its URDF, whose run file is in ``folder``.
 
-    ``control`` is a tag of ros2_control.
+    ``prefix`` is that of its frames, ``control`` a tag of ros2_control.
 
     Raises
     ------
@@ -33,14 +31,14 @@ def description_of(robot: 'RobotConfig', folder: Path, control: Iterable[str] = 
         Its URDF is neither there nor shipped.
 
     """
-    beside = folder / robot.urdf
-    path = beside if beside.is_file() else find_drawing(f'urdf/{robot.urdf}')
+    beside = folder / urdf
+    path = beside if beside.is_file() else find_drawing(f'urdf/{urdf}')
     root = ElementTree.parse(path).getroot()
-    root.extend(_mounts(robot, root))
-    own = {f'{drive.actuator}{end}' for drive in robot.drives for end in ('', '_load_cell')}
+    root.extend(_mounts(drives, root))
+    own = {f'{drive.actuator}{end}' for drive in drives for end in ('', '_load_cell')}
     for name in _names(root):
         if (text := name.get(_key(name), '')) not in own:
-            name.set(_key(name), f'{robot.prefix}{text}')
+            name.set(_key(name), f'{prefix}{text}')
     if lines := [*control]:
         root.append(ElementTree.fromstring('\n'.join(lines)))
     ElementTree.indent(root)
@@ -59,11 +57,11 @@ def _names(root: Element) -> Iterator[Element]:
         yield from joint.iterfind('child')
 
 
-def _mounts(robot: 'RobotConfig', root: Element) -> list[Element]:
+def _mounts(drives: Sequence[DriveConfig], root: Element) -> list[Element]:
     """Return links and fixed joints of the frames of the actuators."""
     there = {link.get('name') for link in root.iterfind('link')}
     found: list[Element] = []
-    for drive in robot.drives:
+    for drive in drives:
         if drive.actuator in there:     # a link of the URDF has its name
             continue
         parent, origin = _carried(drive, root)
