@@ -45,6 +45,12 @@ def post_on(board: Board, message: bytes) -> None:
     _called(call_post, board, words.ctypes.data, words.nbytes)
 
 
+def posted_on(board: Board) -> bytes:
+    """Return the step that was posted last."""
+    k = int(board.head['posted'][0]) % 2
+    return board.steps[k].view(np.uint8)[:board.head['n_bytes'][0, k]].tobytes()
+
+
 def put(board: Board, k: int, message: bytes) -> None:
     """Answer the step that was posted last."""
     words = words_of(message)

@@ -8,7 +8,7 @@ from isa_ros.run.wire import board as module
 from isa_ros.run.wire.board import are_possible, Board, board_of, HEAD, LOUD, new_board, no_board
 import pytest
 from tests.run.boards import (
-    all_there, answer_on, post_on, put, ring_actuators, ring_coordinator)
+    all_there, answer_on, post_on, posted_on, put, ring_actuators, ring_coordinator)
 from tests.run.sleeping import is_woken
 
 pytestmark = pytest.mark.skipif(not are_possible(), reason='a board needs Linux and machine code')
@@ -30,14 +30,35 @@ def rings(board: Board) -> int:
 
 def test_a_step_that_is_posted_is_there_for_all(boards):
     ours, theirs = boards
-    assert theirs.step.nbytes == LARGEST and len(theirs.slots) == N
+    assert theirs.steps[0].nbytes == LARGEST and len(theirs.slots) == N
     for count, message in enumerate((b'some step', b'another one.'), 1):
         message += bytes(-len(message) % 4)
         post_on(ours, message)
-        assert theirs.step.tobytes().startswith(message)
-        assert theirs.head['n_bytes'] == len(message)
+        assert posted_on(theirs) == message
         assert theirs.head['posted'] == theirs.head['bell'] == count
         assert rings(theirs) == -N and theirs.head['messages'] == 0
+
+
+def test_a_step_stays_while_the_next_is_posted(boards):
+    """Who has seen its number may still copy it."""
+    ours, theirs = boards
+    for message in (b'first...', b'second..', b'third...'):
+        post_on(ours, message)
+    assert [own.tobytes()[:8] for own in theirs.steps] == [b'second..', b'third...']
+    assert theirs.head['n_bytes'].tolist() == [[8, 8]]
+
+
+def test_without_its_memory_no_file_is_left(monkeypatch):
+    files = []
+
+    def sealed(file, *_):
+        files.append(file)
+        raise PermissionError('no seals')
+    monkeypatch.setattr(module.fcntl, 'fcntl', sealed)
+    with pytest.raises(PermissionError):
+        new_board(N, LARGEST)
+    with pytest.raises(OSError, match='Bad file descriptor'):
+        os.fstat(files[0])
 
 
 def test_answers_are_counted_and_are_of_the_last_step(boards):

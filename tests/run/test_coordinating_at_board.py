@@ -12,7 +12,7 @@ from isa_ros.run.wire.board import are_possible, board_of, LOUD, new_board
 from isa_ros.run.wire.parts import take_actuator_parts
 from isa_ros.run.wire.steps import encode_tick
 import pytest
-from tests.run.boards import put, ring_coordinator
+from tests.run.boards import posted_on, put, ring_coordinator
 from tests.run.test_coordinating import (
     answered, Bench, bytes_of, closed, encoded, made, N, RUN, spoilt, TICK)
 
@@ -36,7 +36,7 @@ class AtBoard(Bench):
         put(self.theirs, k, data)
 
     def posted(self) -> bytes:
-        return self.theirs.step.view('u1')[:self.theirs.head['n_bytes'][0]].tobytes()
+        return posted_on(self.theirs)
 
 
 @pytest.fixture
@@ -180,3 +180,17 @@ def test_answers_by_socket_do_not_count_at_the_board(bench):
     assert not bench.round.receive()
     assert bench.round.received() == [encoded(1), encoded(2)]
     assert bench.ours[0].recv(LARGEST) == encoded(0)
+
+
+def test_answers_by_socket_are_awaited_no_longer():
+    """A controller's answer would be found when a wait for the board ends."""
+    bench = AtBoard(False)
+    assert bench.round.send(TICK)
+    bench.round.note(0)
+    bench.answer(1, encoded(1))
+    assert bench.round.is_awaiting and bench.round.late() == [encoded(1)]
+    assert bench.round.is_awaiting
+    bench.round.note(2)
+    assert not bench.round.is_awaiting
+    bench.round.take()
+    assert bench.round.send(TICK + 1) and bench.round.is_awaiting

@@ -12,7 +12,7 @@ from isa_ros.core.changeable import Changeable
 from isa_ros.core.conditions import BITS
 from isa_ros.core.signals import SAMPLE
 from isa_ros.run.events import (
-    _runs, events_in, History, OVERPRESSURE, SMALL, Trapped)
+    _runs, CHANGE, events_in, History, OVERPRESSURE, page_event, SMALL, Trapped)
 from isa_ros.run.recorded import _last_trip
 from msg_adapters import device
 import numpy as np
@@ -154,3 +154,12 @@ def test_a_bag_with_some_samples_of_a_cushion_tells_of_those(tmp_path):
     own, = (one for one in isa_ros.read(bag).events if one.kind == OVERPRESSURE)
     assert own.t_s == pytest.approx(0.7, abs=1e-9)
     assert own in recorded_events(Bag(bag), run.configuration)
+
+
+def test_a_setpoint_of_a_page_is_of_the_tick_that_it_took_effect_at():
+    """Its line comes when the slider has stood still; those of older bags have no tick."""
+    history = History([], samples(0), events={
+        9: [page_event('ram: position = 0.03', 4), 'paused'], 20: ['by the page, ram: effort = 7']})
+    assert [(own.t_s, own.source, own.kind, own.what) for own in events_in(RUN, history)] == [
+        (0.004, 'ram', CHANGE, 'by the page, position = 0.03'),
+        (0.02, 'ram', CHANGE, 'by the page, effort = 7')]

@@ -48,8 +48,7 @@ class LockstepTransport:
     def __init__(
             self, node: Node, participants: Participants, limits: Limits, *,
             watch: Callable[[], str | None], should_stop: Callable[[], bool]) -> None:
-        self._node = node
-        self._run = participants
+        self._node, self._run = node, participants
         self._participants = participants.expected
         self._remote = participants.remote
         self._limits = limits
@@ -265,6 +264,7 @@ class LockstepTransport:
                     answer, self._awaited, kind, missing):
                 parts[answer.participant] = answer.parts
                 missing.discard(answer.participant)
+                self._rounds.note(answer.participant)
         return parts
 
     def _next_answer(self) -> bytes | None:

@@ -1,6 +1,7 @@
 """The coordinator's ticks over sockets and the board, compiled as far as nothing is unusual."""
 
 from collections.abc import Callable
+from contextlib import suppress
 import os
 
 from isa_ros.core.bound import nothing, Part
@@ -75,8 +76,9 @@ class SocketRounds:
         """Offer a board to the participants of a run that are connected."""
         self._board, file, self._late, self._is_sent = no_board(), None, [], False
         if self._are_possible and self._wires.is_open and are_possible():
-            self._board, file = new_board(self._n_actuators, sockets.LARGEST)
-            self._wires.ring = bell_of(ring_all, self._board)
+            with suppress(OSError):     # as of too many files: the sockets do as well
+                self._board, file = new_board(self._n_actuators, sockets.LARGEST)
+                self._wires.ring = bell_of(ring_all, self._board)
         self._wires.welcome(file)
         if file is not None:
             os.close(file)
@@ -136,6 +138,11 @@ class SocketRounds:
                 return data
             self._late = this.late()
         return self._late.pop() if self._late else self._wires.wait(0.0)
+
+    def note(self, participant: int) -> None:
+        """Note that a participant has answered, at the board or not: no ring is to come."""
+        if self._round is not None and participant < self._n_actuators:
+            self._round.note(participant)
 
     def take(self) -> None:
         """Fill the rows from the answers."""

@@ -125,8 +125,10 @@ def next_message(own):
         rung, posted = load_at(at.bell), load_at(at.posted)
         if posted != loop.posted:
             loop.posted, loop.is_posted = posted, 1
-            size = min(head.n_bytes, WORD * len(own.step))
-            copy_memory(own.system, loop.step, at.step, size)
+            k = posted & 1
+            size = min(head.n_bytes[k], WORD * len(own.step))
+            copy_memory(
+                own.system, loop.step, at.steps + k * WORD * board.steps.shape[1], size)
             return size
         if head.messages != loop.heard:
             loop.heard = head.messages

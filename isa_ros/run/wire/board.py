@@ -29,15 +29,18 @@ _MOST = 2**31 - 1
 LOUD = 2**20
 """More than there are actuators: awakes the coordinator before all have answered."""
 
-_BELL, _RINGS, _POSTED, _N_BYTES, _MESSAGES = 0, _LINE, 2 * _LINE, 2 * _LINE + 4, 2 * _LINE + 8
+_BELL, _RINGS, _POSTED, _MESSAGES, _N_BYTES = 0, _LINE, 2 * _LINE, 2 * _LINE + 4, 2 * _LINE + 8
 HEAD = np.dtype({
-    'names': ['bell', 'rings', 'posted', 'n_bytes', 'messages'], 'formats': ['<i4'] * 5,
-    'offsets': [_BELL, _RINGS, _POSTED, _N_BYTES, _MESSAGES], 'itemsize': 3 * _LINE})
+    'names': ['bell', 'rings', 'posted', 'messages', 'n_bytes'],
+    'formats': ['<i4', '<i4', '<i4', '<i4', ('<i4', (2,))],
+    'offsets': [_BELL, _RINGS, _POSTED, _MESSAGES, _N_BYTES], 'itemsize': 3 * _LINE})
 """
 Of a board: both bells, and the counts of posted steps and of messages by socket.
 
-``bell`` is that of the actuators. ``rings``, that of the coordinator, is the number of answers
-that it waits for as one below 0; from 0 on each ring wakes it.
+Steps with even and odd numbers have places of their own, of ``n_bytes``: who still copies one is
+not disturbed by the next, and the one after that waits for its answer. ``bell`` is that of the
+actuators. ``rings``, that of the coordinator, is the number of answers that it waits for as one
+below 0; from 0 on each ring wakes it.
 """
 SLOT = np.dtype({
     'names': ['answered', 'n_bytes', 'is_there'], 'formats': ['<i4'] * 3, 'offsets': [0, 4, 8],
@@ -48,7 +51,7 @@ _ANSWER = -(-(HEADER_BYTES + ROWS_BYTES + COMMAND.itemsize + SUPPLY_REPLY.itemsi
 _SEALS = getattr(fcntl, 'F_SEAL_SHRINK', 0) | getattr(fcntl, 'F_SEAL_GROW', 0)
 # Who reads memory that is no longer there is ended by a signal.
 
-AT = np.dtype([(name, 'i8') for name in ('bell', 'rings', 'posted', 'slots', 'step')])
+AT = np.dtype([(name, 'i8') for name in ('bell', 'rings', 'posted', 'slots', 'steps')])
 
 
 class Board(NamedTuple):
@@ -58,8 +61,8 @@ class Board(NamedTuple):
     """Addresses, `AT`, (1,); 0: there is no board."""
     head: np.ndarray
     """`HEAD`, (1,)."""
-    step: np.ndarray
-    """The step that was posted last."""
+    steps: np.ndarray
+    """The last posted steps with an even and an odd number, (2, words)."""
     slots: np.ndarray
     """`SLOT` of each actuator, (n,)."""
     answers: np.ndarray
@@ -88,8 +91,9 @@ def are_there(board):
 def post(system, board, address, size):
     """Post a step of so many bytes at an address for all actuators, and wake them."""
     at, head = board.at[0], board.head[0]
-    copy_memory(system, at.step, address, size)
-    head.n_bytes, head.rings = size, -len(board.slots)
+    k = (load_at(at.posted) + 1) & 1
+    copy_memory(system, at.steps + k * WORD * board.steps.shape[1], address, size)
+    head.n_bytes[k], head.rings = size, -len(board.slots)
     add_at(at.posted, 1)
     add_at(at.bell, 1)
     wake(system, at.bell, _MOST)
@@ -146,16 +150,29 @@ def bell_of(ringing: object, board: Board) -> Callable[[], int]:
 
 def no_board() -> Board:
     """Return what kernels have without a board."""
-    return Board(np.zeros(1, AT), np.zeros(1, HEAD), np.zeros(1, np.uint32),
+    return Board(np.zeros(1, AT), np.zeros(1, HEAD), np.zeros((2, 1), np.uint32),
                  np.zeros(1, SLOT), np.zeros((1, _ANSWER // WORD), np.uint32))
 
 
 def new_board(n_actuators: int, largest: int) -> tuple[Board, int]:
-    """Return a board for steps of at most ``largest`` bytes, and its file, to be closed."""
+    """
+    Return a board for steps of at most ``largest`` bytes, and its file, to be closed.
+
+    Raises
+    ------
+    OSError
+        There is no such memory, or no file for it.
+
+    """
     file = os.memfd_create('isa_ros_board', os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
-    os.ftruncate(file, HEAD.itemsize + largest + n_actuators * (SLOT.itemsize + _ANSWER))
-    fcntl.fcntl(file, fcntl.F_ADD_SEALS, _SEALS)
-    return board_of(file, largest), file
+    try:
+        os.ftruncate(
+            file, HEAD.itemsize + 2 * largest + n_actuators * (SLOT.itemsize + _ANSWER))
+        fcntl.fcntl(file, fcntl.F_ADD_SEALS, _SEALS)
+        return board_of(file, largest), file
+    except OSError:
+        os.close(file)
+        raise
 
 
 def board_of(file: int, largest: int) -> Board:
@@ -170,16 +187,16 @@ def board_of(file: int, largest: int) -> Board:
     """
     if fcntl.fcntl(file, fcntl.F_GET_SEALS) & _SEALS != _SEALS:
         raise OSError('a board that could become smaller')
-    n, rest = divmod(os.fstat(file).st_size - HEAD.itemsize - largest, SLOT.itemsize + _ANSWER)
+    first = HEAD.itemsize + 2 * largest
+    n, rest = divmod(os.fstat(file).st_size - first, SLOT.itemsize + _ANSWER)
     if n < 1 or rest:
         raise OSError('a board of another size')
     memory = np.frombuffer(mmap.mmap(file, 0), np.uint8)
-    first = HEAD.itemsize + largest
-    head, step, slots, answers = np.split(
+    head, posted, slots, answers = np.split(
         memory, [HEAD.itemsize, first, first + n * SLOT.itemsize])
     at = np.zeros(1, AT)
     at['bell'] = memory.ctypes.data
     at['rings'], at['posted'] = at['bell'] + _RINGS, at['bell'] + _POSTED
-    at['slots'], at['step'] = slots.ctypes.data, step.ctypes.data
-    return Board(at, head.view(HEAD), step.view(np.uint32), slots.view(SLOT),
+    at['slots'], at['steps'] = slots.ctypes.data, posted.ctypes.data
+    return Board(at, head.view(HEAD), posted.view(np.uint32).reshape(2, -1), slots.view(SLOT),
                  answers.view(np.uint32).reshape(n, -1))

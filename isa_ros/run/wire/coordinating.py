@@ -90,6 +90,10 @@ class TickRound:
         own = self._own
         return bool(self._this.is_posted and (own.collected != own.board.head['posted']).any())
 
+    def note(self, k: int) -> None:
+        """Note that actuator ``k`` has answered the last step, perhaps not at the board."""
+        self._own.collected[k] = self._own.board.head['posted'][0]
+
     def listen(self) -> None:
         """Let the next `late` end at a ring from now on."""
         self._listen.run()

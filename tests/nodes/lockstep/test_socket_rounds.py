@@ -8,7 +8,7 @@ import time
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import START
 from isa_ros.core.system_calls import SLICE_NS
-from isa_ros.nodes.lockstep import sockets
+from isa_ros.nodes.lockstep import socket_rounds, sockets
 from isa_ros.nodes.lockstep.expected import Expected, Participants
 from isa_ros.nodes.lockstep.socket_rounds import RoundEnds, SocketRounds
 from isa_ros.nodes.lockstep.sockets import LocalWire, LocalWires
@@ -17,7 +17,7 @@ from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import encode_tick
 import numpy as np
 import pytest
-from tests.run.boards import put, ring_coordinator
+from tests.run.boards import posted_on, put, ring_coordinator
 from tests.run.filled import filled
 
 RUN = secrets.randbits(63)
@@ -171,7 +171,7 @@ def test_actuators_get_their_steps_at_the_board(wires, ends, rows):
     first, second, _ = welcomed(rounds, ends)
     assert rounds.send(RUN, 3, rows)
     expected = encode_tick(RUN, 3, rows, True)
-    assert first.step.tobytes().startswith(expected) and ends[2].wait() == expected
+    assert posted_on(first) == expected and ends[2].wait() == expected
     put(second, 1, b'of kfe..')
     assert ends[2].send(b'of the follower')
     assert rounds.receive() == []
@@ -219,3 +219,28 @@ def test_without_rounds_there_is_no_board(wires, ends, rows, run):
     for board in welcomed(SocketRounds(wires, run), ends):
         assert board.at['bell'] == 0
     assert wires.send(b'step') and ends[0].wait() == b'step'
+
+
+def test_without_memory_for_a_board_all_goes_by_socket(monkeypatch, wires, ends, rows):
+    def refused(n_actuators, largest):
+        raise PermissionError('memfd_create')
+    monkeypatch.setattr(socket_rounds, 'new_board', refused)
+    rounds = SocketRounds(wires, participants())
+    assert not any(own.at['bell'][0] for own in welcomed(rounds, ends))
+    assert rounds.send(RUN, 3, rows)
+    assert [end.wait() for end in ends] == [encode_tick(RUN, 3, rows, True)] * 3
+
+
+@pytest.mark.skipif(not are_possible(), reason='a board needs Linux')
+def test_a_controller_is_heard_at_once_after_actuators_that_answer_by_socket(wires, ends, rows):
+    """It rings no bell: a wait at the board would be one of 0.1 s in each tick."""
+    rounds = SocketRounds(wires, participants())
+    welcomed(rounds, ends)
+    assert rounds.send(RUN, 3, rows)
+    for k in (0, 1):
+        assert ends[k].send(b'of an actuator')
+        assert rounds.wait(0.1) == b'of an actuator'
+        rounds.note(k)
+    assert not rounds._round.is_awaiting
+    rounds.note(2)      # a controller, which has no place at the board
+    assert ends[2].send(b'of the follower') and rounds.wait(0.1) == b'of the follower'
