@@ -70,7 +70,7 @@ def beyond_range(measured, supply_pressure, fed_for, own):
         part = max(part, abs(measured.spool) / own.spool_range - 1.0)
     if fed_for > FILLING and own.has_two == 1:
         higher = max(measured.pressure_a, measured.pressure_b)
-        part = max(part, 1.0 - higher / (ZERO * own.pressure_range))
+        part = max(part, 1.0 - max(0.0, higher) / (ZERO * own.pressure_range))
     return max(0.0, part)
 
 

@@ -6,6 +6,7 @@ behind a link a bag has what has arrived.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+import re
 from typing import NamedTuple
 
 from isa_ros.actuator.setpoint_range import REQUEST, request_told
@@ -25,7 +26,9 @@ import numpy as np
 TRIP, WARNING, STATE = 'trip', 'warning', 'state'
 CHANGE, REFUSED, CAVITY, OVERPRESSURE = 'change', 'refused', 'cavity', 'overpressure'
 PAGE = 'by the page, '
-"""Begins the lines about setpoints of a page, ACTUATOR: TEXT."""
+"""Begins the lines about setpoints of a page, `page_event`."""
+_PAGE_EVENT = re.compile(
+    rf'{PAGE}(?P<name>[^:]+): (?P<text>.+?)( before tick (?P<tick>[0-9]{{1,15}}))?')
 PROOF = 1.5
 """Pressure of a cylinder's proof test over its rated one, assumed; less is no event."""
 _DIGITS = 4
@@ -89,6 +92,11 @@ class Trapped(NamedTuple):
     """Pa gauge, (n,)."""
 
 
+def page_event(told: str, tick: int) -> str:
+    """Return the line about a page's setpoint, ACTUATOR: TEXT, which was sent before a tick."""
+    return f'{PAGE}{told} before tick {tick}'
+
+
 def trips_in(run: RunConfig, history: History) -> list[Trip]:
     """Return what tripped, in the order of time."""
     return trips_of(history.samples, [(own.name, own.sheet.is_rotary) for own in run.actuators])
@@ -117,9 +125,10 @@ def _of_requests(history: History, step_ns: int) -> Iterator[Event]:
             yield Event(tick * step_ns / NS_PER_SECOND, name,
                         REFUSED if is_refused else WARNING, f'{REQUEST}{text}')
         for line in texts:
-            if line.startswith(PAGE):
-                name, _, text = line.removeprefix(PAGE).partition(': ')
-                yield Event(tick * step_ns / NS_PER_SECOND, name, CHANGE, f'{PAGE}{text}')
+            if (found := _PAGE_EVENT.fullmatch(line)) is not None:
+                first = tick if found['tick'] is None else int(found['tick'])
+                yield Event(first * step_ns / NS_PER_SECOND, found['name'], CHANGE,
+                            f'{PAGE}{found["text"]}')
 
 
 def _of_device(name: str, samples: Records) -> Iterator[Event]:

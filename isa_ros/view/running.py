@@ -139,7 +139,7 @@ class LiveRun(RowSink):
             raise SetpointError('seek: a run goes forward only')
         text = self._controls.carry_out(order)
         if order.what == SETPOINT:
-            self._drags.move(order.of, order.name, text, self._host)
+            self._drags.move(order.of, order.name, text, coordinator.ticks, self._host)
         return text
 
 
