@@ -6,8 +6,9 @@ from pathlib import Path
 import warnings
 
 import isa_ros
-from isa_ros.analysis.measured.against import against, as_text, NONE
+from isa_ros.analysis.measured.against import against, as_text, fit_cells, NONE
 from isa_ros.analysis.measured.closing import free_of
+from isa_ros.analysis.measured.fit import Fit
 from isa_ros.analysis.measured.mapping import load_mapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
 from isa_ros.analysis.measured.playback import Playback, played, prepared, remark
@@ -236,3 +237,10 @@ def test_a_key_that_cannot_be_free_is_refused(key: str, expected: str) -> None:
     with pytest.raises(ConfigError) as refused:
         free_of(isa_ros.load('rig_linear'), 'ram', [key])
     assert expected in str(refused.value)
+
+
+@pytest.mark.parametrize(('delay', 'matches'), [(0.25, False), (-0.25, False), (0.2, True)])
+def test_a_delay_at_the_end_of_its_search_is_no_match(delay: float, matches: bool) -> None:
+    """As of a time in the wrong unit: a gain of 0 leaves nothing, which reads as perfect."""
+    remark = fit_cells('force', Fit(1.0, delay, 0.0, 0.0, 99))[-1]
+    assert remark == ('' if matches else 'no match: the delay is at the end of its search')
