@@ -67,7 +67,8 @@ def test_ros2_control_has_the_joints_of_a_robot_in_its_namespace(robot, installe
 
 @pytest.mark.parametrize(('texts', 'message'), [
     ({}, 'ros2_control:=leg_torque.yaml needs the package controller_manager, not installed'),
-    ({'config': 'rig_rotary'}, 'ros2_control:=leg_torque.yaml: rig_rotary.yaml has no body with a URDF'),
+    ({'config': 'rig_rotary'},
+     'ros2_control:=leg_torque.yaml: rig_rotary.yaml has no body with a URDF'),
     ({'ros2_control': 'leg_sway'}, 'leg_sway: no such file; shipped: leg_torque.yaml, leg_traj')])
 def test_ros2_control_without_its_packages_a_leg_or_a_file_is_refused(
         leg, installed, texts, message):
@@ -79,7 +80,8 @@ def test_ros2_control_without_its_packages_a_leg_or_a_file_is_refused(
 @pytest.mark.parametrize(('texts', 'message'), [
     ({'rviz': 'true'}, 'rviz:=true needs the package robot_state_publisher, not installed'),
     ({'rviz': 'maybe'}, 'rviz:=maybe, must be true or false'),
-    ({'rviz': 'true', 'config': 'rig_rotary'}, 'rviz:=true: rig_rotary.yaml has no body with a URDF')])
+    ({'rviz': 'true', 'config': 'rig_rotary'},
+     'rviz:=true: rig_rotary.yaml has no body with a URDF')])
 def test_rviz_without_its_packages_or_a_leg_is_refused(leg, texts, message):
     with pytest.raises(ConfigError, match=message):
         leg(**texts)

@@ -45,7 +45,8 @@ def test_a_valve_without_a_spool_sensor_has_no_range_of_it():
 
 @pytest.mark.parametrize(('p_a', 'p_b', 'fed_for', 'part'), [
     (0.0, 0.0, 0.11, 1.0), (0.1e6, 0.0, 0.11, 0.6), (0.0, 0.2e6, 9.0, 0.2),
-    (-6.25e6, -6.25e6, 0.11, 1.0), (0.25e6, 0.0, 0.11, 0.0), (0.0, 5e6, 0.11, 0.0), (0.0, 0.0, 0.09, 0.0), (0.0, 0.0, 0.0, 0.0)])
+    (-6.25e6, -6.25e6, 0.11, 1.0),
+    (0.25e6, 0.0, 0.11, 0.0), (0.0, 5e6, 0.11, 0.0), (0.0, 0.0, 0.09, 0.0), (0.0, 0.0, 0.0, 0.0)])
 def test_both_pressures_at_zero_under_a_supply_are_beyond_a_range(p_a, p_b, fed_for, part):
     """Sensors of 25 MPa: within 1 % of it both, of chambers that had 0.1 s to fill."""
     found = own.beyond_range(

@@ -159,7 +159,8 @@ def test_a_bag_with_some_samples_of_a_cushion_tells_of_those(tmp_path):
 def test_a_setpoint_of_a_page_is_of_the_tick_that_it_took_effect_at():
     """Its line comes when the slider has stood still; those of older bags have no tick."""
     history = History([], samples(0), events={
-        9: [page_event('ram: position = 0.03', 4), 'paused'], 20: ['by the page, ram: effort = 7']})
+        9: [page_event('ram: position = 0.03', 4), 'paused'],
+        20: ['by the page, ram: effort = 7']})
     assert [(own.t_s, own.source, own.kind, own.what) for own in events_in(RUN, history)] == [
         (0.004, 'ram', CHANGE, 'by the page, position = 0.03'),
         (0.02, 'ram', CHANGE, 'by the page, effort = 7')]
