@@ -95,11 +95,11 @@ def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> Mapping[str
         own = others[_FORCE]
         others[_FORCE] = own._replace(declared={
             **own.declared, 'doc': f'{own.doc}{_lasting(sheet, load)}'})
-    return {**tunables(sheet)} | {
+    return {**tunables(sheet), **{
         name: own._replace(declared={
             **narrowed(name, own.declared, narrower),
             'unit': of_coordinate(own.unit, sheet.is_rotary)})
-        for name, own in others.items()}
+        for name, own in others.items()}}
 
 
 def _lasting(sheet: ActuatorSheet, load: LocalLoad | None) -> str:
