@@ -13,7 +13,8 @@ from isa_ros.actuator.constants import digest_of, write_constants
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
 from isa_ros.actuator.link import NONE
-from isa_ros.actuator.requests import link_answer, mode_after, mode_command, refusal_of, start_mode
+from isa_ros.actuator.requests import (
+    deafness_of, link_answer, mode_after, mode_command, refusal_of, start_mode)
 from isa_ros.actuator.rest import put_at_rest
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
@@ -187,10 +188,11 @@ class SmartActuator:
         """Return the mode as it will be at the next tick, a number of `isa_ros.core.device`."""
         return mode_after(self._pending, self._reu)
 
-    def refusal(self, command: np.void) -> str:
-        """Return why a request of enable, clear or stop would change nothing, or ''."""
-        return refusal_of(
-            command, self._pending, self._constants.reu, self._reu)
+    @property
+    def deafness(self) -> str:
+        """Return why a setpoint would not be followed at the next tick, or ''; '' by a link."""
+        return '' if self.has_link else deafness_of(
+            self._pending, self._constants.reu, self._reu)
 
     def request(self, command: np.void, what: str) -> tuple[bool, str]:
         """
@@ -203,7 +205,7 @@ class SmartActuator:
             self.accept(command)
             is_alive, answer = link_answer(self.t_ns, row_record(self.memory.observed))
             return is_alive, f'{what}: {answer}'
-        refusal = self.refusal(command)
+        refusal = refusal_of(command, self._pending, self._constants.reu, self._reu)
         if refusal:
             return False, refusal
         self.accept(command)

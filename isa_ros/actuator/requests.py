@@ -1,11 +1,12 @@
 """Mode at the start, and answers to requests: what a device accepts in its state."""
 
+from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import (
     CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, QUICK_STOP, state_name, STOP)
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
 from isa_ros.core.units import MPA
 from isa_ros.reu.device import is_held
-from isa_ros.reu.protection import GONE
+from isa_ros.reu.protection import GONE, HOLD
 from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.transitions import TRANSITIONS
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
@@ -55,19 +56,45 @@ def link_answer(t_ns: int, observed: np.record) -> tuple[bool, str]:
                   f'{observed.age:.6f} s old')
 
 
+def _frozen(reu: np.record) -> str:
+    return f'no answer for {reu.frozen_for:.6f} s: the program of the REU has stopped'
+
+
+def _state_after(pending: np.record, constants: np.record, reu: np.record) -> int:
+    """Return the state after the ``pending`` `COMMAND` has enabled, disabled or cleared it."""
+    kinds, state = int(pending.kinds), int(reu.status.state)
+    if state == INITIALISING and constants.rules.initialisation == 0.0:
+        state = ENABLED if reu.status.auto_enable else DISABLED
+    if kinds & HAS_CLEAR_FAULT and state == FAULT and is_cause_gone(constants.protection, reu):
+        state = DISABLED
+    if kinds & HAS_ENABLE and state in (DISABLED, ENABLED):
+        state = ENABLED if pending.is_enabled else DISABLED
+    return state
+
+
+def deafness_of(pending: np.record, constants: np.record, reu: np.record) -> str:
+    """Return why a device would not follow a setpoint at the next tick, or ''."""
+    if constants.is_frozen:
+        return _frozen(reu)
+    state, kinds = _state_after(pending, constants, reu), int(pending.kinds)
+    if state == INITIALISING and (
+            pending.is_enabled if kinds & HAS_ENABLE else reu.status.auto_enable):
+        state = ENABLED
+    if state != ENABLED:
+        return f'the state is {state_name(state)}'
+    trips = conditions(int(reu.protection.trips)) if reu.status.state == ENABLED else []
+    holding = [name for name in trips if name != 'setpoint_timeout'     # which a setpoint ends
+               and constants.protection.reaction[BITS[name]] >= HOLD]
+    return f'tripped: {", ".join(holding)}' if holding else ''
+
+
 def refusal_of(
         command: np.void, pending: np.record, constants: np.record, reu: np.record) -> str:
     """Return why a request of enable, clear or stop would change nothing, or ''."""
     if constants.is_frozen:
-        return f'no answer for {reu.frozen_for:.6f} s: the program of the REU has stopped'
-    kinds, state = int(command['kinds']), int(reu.status.state)
-    if state == INITIALISING and constants.rules.initialisation == 0.0:
-        state = ENABLED if reu.status.auto_enable else DISABLED
+        return _frozen(reu)
+    kinds, state = int(command['kinds']), _state_after(pending, constants, reu)
     is_gone = is_cause_gone(constants.protection, reu)
-    if int(pending.kinds) & HAS_CLEAR_FAULT and is_gone and state == FAULT:
-        state = DISABLED
-    if int(pending.kinds) & HAS_ENABLE and state in (DISABLED, ENABLED):
-        state = ENABLED if pending.is_enabled else DISABLED
     for kind, event, what in (
             (HAS_ENABLE, ENABLE if command['is_enabled'] else DISABLE, 'enable'),
             (HAS_CLEAR_FAULT, CLEAR, 'clear_fault'), (HAS_QUICK_STOP, STOP, 'quick_stop')):

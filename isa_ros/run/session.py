@@ -211,9 +211,9 @@ def record(
             with BagWriter(out, thinning.topics, provenance, overwrite,
                            run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
-                loop.sinks = (
-                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published,
-                              period_of=run.publish.period), trip_log, *sinks)
+                loop.sinks = (  # at the end they may have events for the bag
+                    *sinks, RunOutput(packer, run.step_ns, thinning.recorder(bag), published,
+                                      period_of=run.publish.period), trip_log)
                 coordinator = Coordinator(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),

@@ -136,7 +136,11 @@ class Controls:
             yield _slider(field, bounds, value, _GAIN_RANGE if field in GAINS.values() else None)
 
     def _set(self, actuator: SmartActuator, field: str, value: float) -> str:
-        """Send a setpoint in which one number is new; return what was limited, or the number."""
+        """
+        Send a setpoint in which one number is new.
+
+        Returns what was limited, or the number; and why the device does not follow it, if so.
+        """
         if field in GAINS.values() or field in REFERENCES:
             setpoint = Setpoint(**{field: value})   # type: ignore[arg-type]
         elif field in _MOTION:
@@ -147,7 +151,9 @@ class Controls:
                                 f'{alternatives(field, known)}')
         command = _command(actuator, setpoint)
         refuse_without_effort(actuator.name, setpoint, actuator.mode)
-        return actuator.admit(command) or f'{actuator.name}: {field} = {value:g}'
+        told = actuator.admit(command) or f'{actuator.name}: {field} = {value:g}'
+        why = actuator.deafness
+        return f'{told}, not followed: {why}' if why else told
 
     def _in_force(self, actuator: SmartActuator) -> list[float | None] | None:
         """Return the values of its setpoint's sliders; None in another mode than at the start."""

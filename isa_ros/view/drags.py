@@ -5,6 +5,7 @@ A slider that is dragged sends some ten setpoints a second. Each is in the bag w
 effect; as an event of the run counts the last one of them, once the slider has stood still.
 """
 
+import math
 from typing import NamedTuple
 
 from isa_ros.run.events import page_event
@@ -31,11 +32,7 @@ class Drags:
         """Note that a setpoint was sent before a tick; ``told`` is the answer to it."""
         self._moved[of, name] = _Move(told, tick, now)
 
-    def clear(self) -> None:
-        """Forget them all: the run begins at t = 0."""
-        self._moved.clear()
-
-    def ended(self, now: float) -> list[str]:
-        """Return the events of the drags that have ended since the last call."""
+    def ended(self, now: float = math.inf) -> list[str]:
+        """Return the events of the drags that have ended since the last call; without now all."""
         over = [key for key, own in self._moved.items() if now - own.at >= STILL_S]
         return [page_event(own.told, own.tick) for own in map(self._moved.pop, over)]

@@ -60,6 +60,7 @@ class LiveRun(RowSink):
         self._answers: list[OrderAnswer] = []
         self._now, self._next = now, 0.0
         self._drags, self._host = Drags(), 0.0
+        self._coordinator: Coordinator | None = None
         self.hub = Hub(page.tree(
             run, 'run', None if n_ticks is None else n_ticks * run.step_ns / NS_PER_SECOND,
             note='', controls=self._controls.tree()))
@@ -81,7 +82,7 @@ class LiveRun(RowSink):
 
     def serve(self, coordinator: Coordinator) -> None:
         """Carry out the orders since the last call; send a frame when it is due."""
-        self._host = self._now()
+        self._coordinator, self._host = coordinator, self._now()
         for order in self.hub.taken():
             self._answers.append(self._answer(order, coordinator))
         for event in self._drags.ended(self._host):
@@ -89,6 +90,17 @@ class LiveRun(RowSink):
         if self._host >= self._next:
             self._next = self._now() + PERIOD_S
             self.send(coordinator)
+
+    def end(self) -> None:
+        """Note the drags that go on at the end of the run."""
+        for event in self._drags.ended():
+            assert self._coordinator is not None, 'it has served the drag'
+            self._coordinator.add_event(event)
+
+    def end_pages(self) -> None:
+        """Send the last frame, if the run has begun."""
+        if self._coordinator is not None:
+            self.send(self._coordinator, is_over=True)
 
     def send(self, coordinator: Coordinator, *, is_over: bool = False) -> None:
         """Send a frame to the pages."""
@@ -130,7 +142,6 @@ class LiveRun(RowSink):
         if order.what == RESTART:
             coordinator.reset()
             self._controls.restart()
-            self._drags.clear()
             return 'starts again at t = 0, with another bag'
         if order.what == STOP:
             coordinator.emergency_stop(order.value)
@@ -178,11 +189,6 @@ def view_run(
     surroundings, group = surroundings_of(run), group_of(run)
     transport = calling(run, InProcess(group, surroundings.starts()))
     live = LiveRun(session, group, surroundings, folder)
-    last: list[Coordinator] = []
-
-    def serve(coordinator: Coordinator) -> None:
-        last[:] = [coordinator]
-        live.serve(coordinator)
     with serving(live.hub, port) as address:
         tell(address)
         while not live.hub.was_opened.wait(PERIOD_S):
@@ -191,7 +197,6 @@ def view_run(
         session.freeze_objects()
         try:
             record(session, transport, surroundings, lambda topics: Outlets(), report,
-                   should_stop, serve, sinks=(live,))
+                   should_stop, live.serve, sinks=(live,))
         finally:
-            if last:
-                live.send(last[0], is_over=True)
+            live.end_pages()

@@ -10,7 +10,7 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
-from isa_ros.run.coordinator import Coordinator
+from isa_ros.run.coordinator import Coordinator, Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets
 from isa_ros.run.session import prepare, record
@@ -27,8 +27,8 @@ class Lived:
     """A run of a rig, with the orders of a page before some ticks."""
 
     def __init__(self, out: Path, orders=(), config='rig_linear', scenario=None, has_page=True,
-                 duration=0.05, is_paused=False):
-        self.host, self.frames, self.taken = 0.0, [], 0
+                 duration=0.05, is_paused=False, stops_at=None):
+        self.host, self.frames, self.ticks, self.stops_at = 0.0, [], 0, stops_at
         self.orders = {tick: [*own] for tick, own in dict(orders).items()}
         session = prepare(Request(
             config=find(config, CONFIG), out=out, duration_s=duration, is_paused=is_paused,
@@ -40,7 +40,8 @@ class Lived:
             self.live.hub.opened()
         self.live.hub.send = self._take
         record(session, InProcess(group, surroundings.starts()), surroundings,
-               lambda topics: Outlets(), None, lambda: False, self._serve, sinks=(self.live,))
+               lambda topics: Outlets(), None, lambda: self.ticks == self.stops_at, self._serve,
+               sinks=(self.live,))
         self.bags = session.bags
         self.bag = Bag(out)
 
@@ -54,6 +55,7 @@ class Lived:
         self.frames.append({**tree, 'rows': rows.reshape(tree['n'], self.page['channels'])})
 
     def _serve(self, coordinator: Coordinator):
+        self.ticks = coordinator.ticks
         for order in self.orders.pop(coordinator.ticks, ()):
             self.live.hub.orders.put(order_of(json.dumps(order).encode()))
         self.live.serve(coordinator)
@@ -118,11 +120,37 @@ def test_a_drag_is_one_event_of_the_run(tmp_path):
     assert replay(lived.bag).is_equal
 
 
-def test_a_drag_before_a_restart_is_no_event_of_the_next_run(tmp_path):
+@pytest.mark.parametrize('ends', ['whole', 'stopped', 'restarted'])
+def test_a_drag_at_the_end_is_an_event_of_its_run(tmp_path, ends):
+    """However the run ends before the slider stood still; of the run after it it is none."""
+    orders = {10: [setpoint('position', 0.031)], 12: [setpoint('position', 0.032)]}
+    if ends == 'restarted':
+        orders[14] = [{'what': 'restart'}]
+    try:
+        Lived(tmp_path / 'bag', orders, duration=0.02, stops_at=14 if ends == 'stopped' else None)
+    except Interrupted:
+        assert ends == 'stopped'
+    event, = (own for own in isa_ros.read(tmp_path / 'bag').events if own.kind == 'change')
+    assert (event.source, event.what, event.t_s) == ('ram', 'by the page, position = 0.032', 0.012)
+    assert replay(Bag(tmp_path / 'bag')).is_equal
+    assert (tmp_path / 'bag_2').exists() == (ends == 'restarted')
+    if ends == 'restarted':
+        assert not [own for own in isa_ros.read(tmp_path / 'bag_2').events if own.kind == 'change']
+
+
+def test_a_setpoint_that_is_not_followed_is_answered_so(tmp_path):
+    """While the device is disabled, and no longer once it is enabled again; so is its event."""
     lived = Lived(tmp_path / 'bag', {
-        10: [setpoint('position', 0.031)], 12: [{'what': 'restart'}]}, duration=0.2)
-    for bag in lived.bags:
-        assert not [own for own in isa_ros.read(bag).events if own.kind == 'change']
+        5: [{'what': 'request', 'of': 'ram', 'name': 'disable'}],
+        10: [setpoint('position', 0.031)],
+        12: [{'what': 'request', 'of': 'ram', 'name': 'enable'}, setpoint('effort', 70.0)]})
+    told = [own['text'] for own in lived.answers]
+    assert told[1] == 'ram: position = 0.031, not followed: the state is disabled'
+    assert told[3] == 'ram: effort = 70'
+    assert [own['is_done'] for own in lived.answers] == [True] * 4
+    events = [own.what for own in isa_ros.read(lived.bag.path).events if own.kind == 'change']
+    assert events == ['by the page, position = 0.031, not followed: the state is disabled',
+                      'by the page, effort = 70']
 
 
 def test_a_setpoint_takes_effect_at_the_next_tick_and_is_in_the_bag(tmp_path):
