@@ -6,22 +6,17 @@ A setpoint that leaves the range is refused, or limited to it where the configur
 checked at every one, those of scenarios when the file is read.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 import math
 from typing import NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
-from isa_ros.actuator.requested import is_unusual, Requested
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables
-from isa_ros.core.bound import Rebound
 from isa_ros.core.changeable import sound
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, MODES, POSITION, PRESSURE, SPOOL
-from isa_ros.core.record import floats
 from isa_ros.core.remembered import remembered
-from isa_ros.core.signals import (
-    COMMAND, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
-from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.signals import HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError, SetpointError
 from isa_ros.plant.coil import coil_record
@@ -33,16 +28,10 @@ import numpy as np
 LIMIT = 'limit'
 BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
-REPORT_NS = NS_PER_SECOND
-"""Simulated time between two reports of requests to one actuator."""
-REQUEST = "a controller's request, "
-"""Begins the lines about requests beyond their range."""
-_REFUSED = 'refused: '
 NUMBERS = {
     FORCE: ('effort',), POSITION: ('position', 'velocity'),
     IMPEDANCE: ('position', 'velocity', 'effort')}
 """What each mode uses of position, velocity and effort; the inner modes may use the effort."""
-_FLOAT_BYTES = 8
 MOST_TURNS = 1e4
 """Largest position of a motor either way."""
 LOAD_BEYOND = 0.5
@@ -195,6 +184,15 @@ class SetpointRange:
             limited.append(f'{text}, {found.limitation}')
         return '; '.join(limited)
 
+    def limit(self, commands: Records) -> None:
+        """Limit the fields of `COMMAND` rows of one kind and mode in place, (n,)."""
+        kinds, mode = int(commands['kinds'][0]), int(commands['mode'][0])
+        bounds = dict(self.bounds) if kinds & HAS_SETPOINT else {}
+        if kinds & HAS_REFERENCE:
+            bounds['reference'] = self._references[mode]
+        for name, own in bounds.items():
+            np.clip(commands[name], own.low, own.high, out=commands[name])
+
     def _refuse_mode(self, command: np.void, mode: int | None) -> None:
         kinds, own = int(command['kinds']), int(command['mode'])
         if kinds & HAS_MODE:
@@ -238,57 +236,3 @@ def _beyond(field: str, name: str, command: np.void, bounds: Bounds) -> Iterator
     value = float(command[field])
     if not math.isnan(value) and not bounds.low <= value <= bounds.high:
         yield Beyond(field, name, value, bounds)
-
-
-class RequestRange:
-    """
-    Checks what controllers request of the actuators of a run, at every tick.
-
-    ``ranges`` are those of the actuators, in the order of the rows.
-    """
-
-    def __init__(self, ranges: Sequence[SetpointRange]) -> None:
-        self._ranges = ranges
-        self._low = np.full((len(ranges), COMMAND.itemsize // _FLOAT_BYTES), -math.inf)
-        self._high = -self._low
-        low, high = self._low.view(COMMAND)[:, 0], self._high.view(COMMAND)[:, 0]
-        for row, own in enumerate(ranges):
-            for field, bounds in own.bounds.items():
-                low[field][row], high[field][row] = bounds.low, bounds.high
-        self._next_report = [0] * len(ranges)
-        self._is_beyond = Rebound(is_unusual, lambda requests: Requested(
-            requests, floats(requests), self._low, self._high))
-
-    def admit(self, t_ns: int, requests: Records) -> Sequence[str]:
-        """
-        Limit or delete the `COMMAND` rows (n_actuators,) of requests beyond the range, in place.
-
-        Returns lines that report it, at most one in `REPORT_NS` per actuator. A request that is
-        refused is deleted as a whole, with its enabling.
-        """
-        if not self._is_beyond.to(requests).run():
-            return ()
-        lines = []
-        for row, own in enumerate(self._ranges):
-            try:
-                text = own.admit(requests[row])
-            except SetpointError as error:
-                text = f'{_REFUSED}{error}'
-                requests[row] = np.zeros((), COMMAND)
-            if text and t_ns >= self._next_report[row]:
-                self._next_report[row] = t_ns + REPORT_NS
-                lines.append(f'{REQUEST}{text}')
-        return tuple(lines)
-
-
-def request_told(line: str) -> tuple[str, str, bool] | None:
-    """
-    Return what a line of `RequestRange` tells: actuator, text, whether the request was refused.
-
-    None: it is not such a line.
-    """
-    if not line.startswith(REQUEST):
-        return None
-    told = line.removeprefix(REQUEST)
-    name, _, text = told.removeprefix(_REFUSED).partition(': ')
-    return name, text, told.startswith(_REFUSED)

@@ -5,7 +5,8 @@ import math
 from types import MappingProxyType
 
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
+from isa_ros.actuator.request_range import RequestRange
+from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.timing import Timing
 from isa_ros.config.runs.actuator_config import ActuatorConfig
 from isa_ros.config.runs.body_config import BodyFactory, BodyInputs

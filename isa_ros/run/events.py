@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import re
 from typing import NamedTuple
 
-from isa_ros.actuator.setpoint_range import REQUEST, request_told
+from isa_ros.actuator.request_range import REQUEST, request_told
 from isa_ros.actuator.tunable import changing
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.changeable import Changeable, changeables

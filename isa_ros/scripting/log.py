@@ -73,10 +73,15 @@ class _Column:
     def take(self, tick: int) -> None:
         """Copy the source of a sample."""
         if tick >= len(self.rows):
-            larger: Records = np.zeros((2 * tick, *self.rows.shape[1:]), self.rows.dtype)
+            self.reach(2 * tick)
+        self._floats[tick] = self._source
+
+    def reach(self, n: int) -> None:
+        """Have rows for at least so many samples."""
+        if n > len(self.rows):
+            larger: Records = np.zeros((n, *self.rows.shape[1:]), self.rows.dtype)
             larger[:len(self.rows)] = self.rows
             self.rows, self._floats = larger, floats(larger)
-        self._floats[tick] = self._source
 
     def keeping(self, clock: NDArray[np.int64]) -> Bound:
         """Return what copies the source of a quiet tick, for which there is a row."""
@@ -98,6 +103,7 @@ class LogSink(RowSink):
         self._all = [self._samples, self._supplies, *self._bodies.values()]
         if self._observed is not None:
             self._all.append(self._observed)
+        self._commands = _Column(rows.applied, 0, len(rows.applied))
         self._applied: dict[int, Records] = {}
         self._sent: dict[int, Records] = {}
         self._tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
@@ -105,6 +111,7 @@ class LogSink(RowSink):
         self._events: dict[int, list[str]] = {}
         self._kinds, self._sent_kinds = rows.applied['kinds'], rows.sent['kinds']
         self._n_ticks, self._report, self._taken = n_ticks, report, 0
+        self._is_commanded = False
 
     @property
     def log(self) -> Log:
@@ -136,14 +143,26 @@ class LogSink(RowSink):
         """Return how many have a row already, up to the next report of progress."""
         return min(len(self._samples.rows) - 1 - tick, _REPORT_TICKS - 1 - tick % _REPORT_TICKS)
 
+    def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
+        """Return True."""
+        self._is_commanded = bool(expected.any())
+        return True
+
     def begin_quiet(
             self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
         """Return what copies the rows."""
-        return most, [Part(column.keeping(clock), nothing) for column in self._all]
+        columns = self._all
+        if self._is_commanded:
+            self._commands.reach(len(self._samples.rows))
+            columns = [*columns, self._commands]
+        return most, [Part(column.keeping(clock), nothing) for column in columns]
 
     def end_quiet(self, tick: int, n_ticks: int) -> None:
-        """Count the samples."""
+        """Count the samples, and those with an applied command."""
         self._taken = tick + n_ticks + 1
+        if self._is_commanded:
+            self._applied.update(
+                (k, self._commands.rows[k]) for k in range(tick + 1, self._taken))
 
     def add_event(self, tick: int, text: str) -> None:
         """Keep an event before ``tick``."""

@@ -1,6 +1,7 @@
 """A run in Python: read from files, changed by key, simulated in memory."""
 
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 import re
@@ -98,6 +99,12 @@ class Run:
 
         """
         return Run(*_changed(self._config, self._scenario_file, changes), **self._options)
+
+    def following(self, scenario: Scenario) -> 'Run':
+        """Return the run with a scenario made in Python; `replace` returns to that of its file."""
+        found = copy(self)
+        found.scenario = scenario
+        return found
 
     def simulation(
             self, controllers: Controllers = (), *, body: Factories | None = None) -> Simulation:

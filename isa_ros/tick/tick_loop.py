@@ -10,7 +10,7 @@ at t = 0.
 
 from collections.abc import Callable, Sequence
 
-from isa_ros.actuator.setpoint_range import RequestRange
+from isa_ros.actuator.request_range import RequestRange
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND

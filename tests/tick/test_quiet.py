@@ -51,29 +51,36 @@ def test_stamps_begin_at_the_time_of_the_run(tmp_path):
     assert first[-1][2] == 1_700_000_000_030_000_000
 
 
-def log_of(run: Run, n_ticks: int, pattern: tuple[int, ...], room: int) -> list[object]:
-    """Return what is logged of a run, where so many ticks were expected."""
+def log_of(
+        run: Run, n_ticks: int, pattern: tuple[int, ...], room: int) -> tuple[list[object], int]:
+    """Return what is logged of a run where so many ticks were expected, and the single ticks."""
     simulation = run.simulation()
     sink = LogSink(simulation, room)
     simulation.loop.sinks = (sink,)
-    advance(simulation, n_ticks, pattern)
+    single = advance(simulation, n_ticks, pattern)
     log = sink.log
     return [log.samples.tobytes(), log.supplies.tobytes(), log.bodies['body'].tobytes(),
-            {tick: rows.tobytes() for tick, rows in log.applied.items()}, len(log.samples)]
+            {tick: rows.tobytes() for tick, rows in log.applied.items()}, len(log.samples)], single
 
 
 def test_a_log_has_the_same_rows_also_where_it_grows():
     run = load('leg', scenario='drop')
-    first = log_of(run, 330, (1,), 330)
+    first, _ = log_of(run, 330, (1,), 330)
     assert first[-1] == 331 and len(first[3]) > 1
     for room, pattern in ((330, (1000,)), (330, (1, 50, 3)), (40, (25,))):
-        assert log_of(run, 330, pattern, room) == first
+        assert log_of(run, 330, pattern, room)[0] == first
 
 
-def test_a_log_of_a_motion_has_every_applied_command():
-    run = load('leg', scenario='trot_leg')
-    first = log_of(run, 90, (1,), 90)
-    assert len(first[3]) > 60 and log_of(run, 90, (1000,), 90) == first
+@pytest.mark.parametrize('scenario', ['trot_leg', 'drop'])
+def test_a_log_of_a_motion_has_every_applied_command_by_kernels(scenario):
+    """At every tick or at some: both kinds of calls, and a log that grows."""
+    run = load('leg', scenario=scenario)
+    first, single = log_of(run, 90, (1,), 90)
+    assert single == 90 and len(first[3]) > (60 if scenario == 'trot_leg' else 0)
+    for room, pattern in ((90, (1000,)), (90, (1, 20, 3)), (30, (7,))):
+        found, single = log_of(run, 90, pattern, room)
+        assert found == first
+        assert single < 40, pattern
 
 
 def test_a_trip_is_told_once():

@@ -1,20 +1,27 @@
 """The simulated machine, given the commands that a measured one received."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 import math
 from typing import Any
 import warnings
 
+from isa_ros.actuator.setpoint_range import complete, LIMIT, SetpointRange
 from isa_ros.analysis.measured.mapping import PLACE, SLOPE, VELOCITY
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
-from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.controller import Setpoint
+from isa_ros.core.device import REFERENCES
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.requests import fill_command
 from isa_ros.reu.block import Pid
 from isa_ros.reu.impedance import Impedance
+from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.run import Run
 from isa_ros.text.table import digits
 import numpy as np
@@ -27,20 +34,46 @@ LONGEST_S = 600.0
 """Of a measurement that is simulated: minutes of computing."""
 
 
-class Playback(Controller):
-    """Commands an actuator as a measurement was; each command holds until the next one."""
+@dataclass(frozen=True)
+class Playback(Scenario):
+    """A scenario that commands one actuator as a machine was, from the first tick after t = 0."""
 
-    def __init__(self, name: str, commands: Mapping[str, Signal], step_ns: int) -> None:
-        self._name, self._commands, self._step_ns = name, commands, step_ns
+    row: int = 0
+    """Of the actuator."""
+    received: Records = field(default_factory=lambda: np.zeros(1, COMMAND), compare=False)
+    """Its `COMMAND` by tick, (n_ticks + 1,)."""
 
-    def step(self, state: State) -> dict[str, Setpoint]:
-        """Return the setpoint of the next tick, in which it takes effect."""
-        t = (state.t_ns + self._step_ns) / NS_PER_SECOND + _ROUNDING
-        values: dict[str, Any] = {}
-        for name, (times, numbers) in self._commands.items():
-            k = int(np.searchsorted(times, t, side='right')) - 1
-            values[QUANTITIES[name].setpoint] = float(numbers[max(k, 0)])
-        return {self._name: Setpoint(**values)}
+    def next_command(self, tick: int) -> float:
+        """Return the first tick from ``tick`` on with a command."""
+        return max(tick, 1)
+
+    def commands(self, tick: int, out: Records) -> None:
+        """Write this tick's command into ``out``, `COMMAND` rows of shape (n_actuators,)."""
+        if 0 < tick < len(self.received):
+            out[self.row] = self.received[tick]
+
+
+def playback(
+        run: RunConfig, name: str, commands: Mapping[str, Signal], n_ticks: int) -> Playback:
+    """
+    Return the scenario of what an actuator was commanded: each command holds until the next one.
+
+    Before its first one that one counts. What is beyond the actuator's range is limited to it.
+    """
+    t = np.arange(n_ticks + 1) * run.step_ns / NS_PER_SECOND + _ROUNDING
+    values = {QUANTITIES[quantity].setpoint: own.values[
+        np.maximum(np.searchsorted(own.t, t, side='right') - 1, 0)]
+        for quantity, own in commands.items()}
+    first = np.zeros(1, COMMAND)
+    setpoint: dict[str, Any] = {key: float(own[0]) for key, own in values.items()}
+    fill_command(name, Setpoint(**setpoint), first[0])
+    actuator = run.actuator(name)
+    complete(first[0], actuator.initial_position)
+    received = np.repeat(first, len(t))
+    for key, own in values.items():
+        received['reference' if key in REFERENCES else key] = own
+    SetpointRange(name, actuator.sheet, LIMIT).limit(received)
+    return Playback(f'playback_{name}', run, n_ticks, (), row=run.index(name), received=received)
 
 
 def prepared(run: Run, name: str, measurement: Measurement) -> Run:
@@ -104,10 +137,11 @@ def played(run: Run, name: str, measurement: Measurement, duration: float) -> di
 
     """
     configuration = run.configuration
+    n_ticks = round(duration * NS_PER_SECOND / configuration.step_ns)
     with warnings.catch_warnings():
-        warnings.simplefilter('ignore')     # limited commands: the measured machine had them too
-        result = run.simulate(duration, [Playback(
-            name, measurement.commands, configuration.step_ns)])
+        warnings.simplefilter('ignore')     # trips: the measured machine may have had them too
+        result = run.following(
+            playback(configuration, name, measurement.commands, n_ticks)).simulate()
     supply = next(own for own in configuration.supplies if name in own.feeds)
     names = {quantity: f'{name}.{QUANTITIES[quantity].field}' for quantity in measurement.outputs
              if QUANTITIES[quantity].field}

@@ -6,15 +6,16 @@ from pathlib import Path
 import warnings
 
 import isa_ros
+from isa_ros.actuator.setpoint_range import LIMIT, SetpointRange
 from isa_ros.analysis.measured.against import against, as_text, fit_cells, NONE
 from isa_ros.analysis.measured.closing import free_of
 from isa_ros.analysis.measured.fit import Fit
 from isa_ros.analysis.measured.mapping import load_mapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
-from isa_ros.analysis.measured.playback import Playback, played, prepared, remark
+from isa_ros.analysis.measured.playback import playback, played, prepared, remark
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.cli.main import main
-from isa_ros.controller import State
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -172,14 +173,37 @@ def test_the_run_begins_as_the_measurement_and_follows_its_command(
     assert simulated.values[-1] > 0.05 and len(simulated.t) == 201
 
 
-@pytest.mark.parametrize('t_ns, expected', [
-    (0, 1.0), (498_000_000, 1.0), (598_000_000, 1.0), (599_000_000, 2.0), (900_000_000, 2.0)])
-def test_a_command_holds_until_the_next_and_the_first_before_it(
-        t_ns: int, expected: float) -> None:
-    """Of the tick in which the setpoint takes effect, 1 ms later."""
-    commands = {'position_command': Signal(np.array([0.5, 0.6]), np.array([1.0, 2.0]))}
-    state = State(t_ns, {}, {}, {})
-    assert Playback('ram', commands, 1_000_000).step(state)['ram'].position == expected
+def test_a_command_holds_until_the_next_and_the_first_before_it() -> None:
+    """At t = 0 there is none: the machine stands at what was measured first."""
+    run = isa_ros.load('rig_linear').configuration
+    commands = {'position_command': Signal(np.array([0.5, 0.6]), np.array([0.01, 0.02]))}
+    found = playback(run, 'ram', commands, 1000)
+    assert [found.next_command(tick) for tick in (0, 1, 7)] == [1, 1, 7]
+    rows = np.zeros((1000, 1), COMMAND)
+    for tick, row in enumerate(rows):
+        found.commands(tick, row)
+    assert not rows['kinds'][0].any() and (rows['kinds'][1:] == HAS_SETPOINT).all()
+    assert set(rows['position'][1:600, 0]) == {0.01} and set(rows['position'][600:, 0]) == {0.02}
+    assert not rows['effort'].any() and np.isnan(rows['stiffness'][1:]).all()
+
+
+@pytest.mark.parametrize('quantity, value, field, expected', [
+    ('position_command', 9.0, 'position', 0.1), ('position_command', -9.0, 'position', 0.0),
+    ('force_command', 1e6, 'effort', None), ('spool_command', -1.0, 'reference', None)])
+def test_commands_beyond_the_range_are_limited(
+        quantity: str, value: float, field: str, expected: float | None) -> None:
+    """As the actuator itself limits them, those within stay."""
+    run = isa_ros.load('rig_linear').configuration
+    values = np.array([1e-6, value])
+    found = playback(run, 'ram', {quantity: Signal(np.array([0.0, 0.5]), values)}, 600).received
+    own = SetpointRange('ram', run.actuator('ram').sheet, LIMIT)
+    row = found[550].copy()
+    row[field] = value
+    assert own.admit(row).startswith('ram: setpoint ')
+    assert found[field][550] == row[field] != value and found[field][400] == 1e-6
+    assert expected in (None, row[field])
+    assert found['position'][400] == (1e-6 if field == 'position' else
+                                      0.0 if field == 'reference' else 0.05)
 
 
 def test_a_command_of_a_mode_is_given_in_that_mode(
