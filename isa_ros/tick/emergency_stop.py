@@ -187,9 +187,9 @@ class EmergencyStops:
             if not group.waits or all(
                     _is_off(samples[row], are_asked) for row in group.trips):
                 dumps.update(dict.fromkeys(group.supplies, True))
-        self._surroundings.tune({
-            f'{name}.{DUMP}': float(is_open) for name, is_open in dumps.items()
-            if self._is_new(name, is_open)})
+        if changed := {f'{name}.{DUMP}': float(is_open) for name, is_open in dumps.items()
+                       if self._is_new(name, is_open)}:
+            self._surroundings.tune(changed)
         new = {row: float(is_open) for row, is_open in lines.items()
                if self._is_new(row, is_open)}
         return {**changes, **{

@@ -163,6 +163,12 @@ class TickLoop:
         elif ended is QuietEnd.BEGUN:
             self._finish_tick()
 
+    def advance_to(self, tick: int) -> None:
+        """Advance to t = tick step_ns, the last tick by Python; raises as `advance`."""
+        while self.ticks < tick:
+            self.advance_quietly(tick - 1)
+            self.advance()
+
     def _quiet_now(self) -> QuietTicks | None:
         """Return the compiled loop; None: something waits to take effect that it does not know."""
         rows, transport = self.rows, self.transport
@@ -225,9 +231,7 @@ class TickLoop:
     def run(self, n_ticks: int, state: RunState | None = None) -> None:
         """After `join`, advance to t = n_ticks step_ns; raises as `advance`."""
         self.begin(state)
-        while self.ticks < n_ticks:
-            self.advance_quietly(n_ticks - 1)   # the last one is for Python, which ends the run
-            self.advance()
+        self.advance_to(n_ticks)
         self.finish()
         self.end()
 

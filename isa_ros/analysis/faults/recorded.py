@@ -5,11 +5,13 @@ from dataclasses import replace
 
 from isa_ros.analysis.faults.rigs import FaultRig
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.signals import (
-    CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, LOAD_REPLY, SAMPLE)
+from isa_ros.core.bound import nothing, Part
+from isa_ros.core.signals import CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
 from isa_ros.core.units import MILLI
+from isa_ros.scripting.log import Column
 from isa_ros.simulation import Simulation
 from isa_ros.text.table import digits
+from isa_ros.tick.exchange import Rows, RowSink
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,26 +45,52 @@ def recorded(
     """
     scenario = rig.run.scenario.with_faults(faults)
     simulation = Simulation(replace(scenario, run=rig.run.configuration))
-    n, row = round(duration_s / STEP_S), rig.row
-    clear = None if clear_s is None else round(clear_s / STEP_S)
-    rows, replies = np.zeros(n + 1, SAMPLE), np.zeros(n + 1, LOAD_REPLY)
-    for tick in range(n + 1):
-        if tick:
-            simulation.step()
-        rows[tick] = simulation.group.samples[row]
-        replies[tick] = simulation.loop.rows.replies[row]
-        if clear is not None and tick in (clear, clear + 1):
-            _clear(simulation, row, tick == clear)
+    n, loop = round(duration_s / STEP_S), simulation.loop
+    kept = _Kept(simulation, n)
+    loop.sinks = (kept,)
+    loop.begin()
+    if clear_s is not None:
+        for tick, kind in enumerate((HAS_CLEAR_FAULT, HAS_ENABLE), round(clear_s / STEP_S)):
+            loop.advance_to(tick)
+            _request(simulation, rig.row, kind)
+    loop.advance_to(n)
+    rows, replies = kept.samples.rows[:, rig.row], kept.replies.rows[:, rig.row]
     return {SUPPLY: rows['supply_pressure']} | {
         name: rows[name] for name in (*CHANNELS, *DEVICE)} | dict(
             zip(EXACT, (replies['position'], replies['force'])))
 
 
-def _clear(simulation: Simulation, row: int, is_first: bool) -> None:
-    """Clear the fault that the device keeps, then enable it again."""
+class _Kept(RowSink):
+    """Keeps what the actuators read and how they move, at each of so many ticks."""
+
+    def __init__(self, simulation: Simulation, n_ticks: int) -> None:
+        samples, replies = simulation.group.samples, simulation.loop.rows.replies
+        self.samples = Column(samples, n_ticks + 1, *samples.shape)
+        self.replies = Column(replies, n_ticks + 1, *replies.shape)
+
+    def take(self, tick: int, rows: Rows) -> None:
+        """Keep the rows of a tick."""
+        self.samples.take(tick)
+        self.replies.take(tick)
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return how many ticks follow."""
+        return len(self.samples.rows) - 1 - tick
+
+    def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
+        """Return True: commands are not kept."""
+        return True
+
+    def begin_quiet(
+            self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
+        """Return what keeps the rows."""
+        return most, [Part(own.keeping(clock), nothing) for own in (self.samples, self.replies)]
+
+
+def _request(simulation: Simulation, row: int, kind: int) -> None:
+    """Clear the fault that the device keeps, or enable it."""
     command = np.zeros(1, COMMAND)[0]
-    command['kinds'] = HAS_CLEAR_FAULT if is_first else HAS_ENABLE
-    command['is_enabled'] = 1
+    command['kinds'], command['is_enabled'] = kind, 1
     simulation.group.actuators[row].accept(command)
 
 

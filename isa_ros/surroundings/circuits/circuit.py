@@ -146,7 +146,8 @@ class Circuit:
 
     def refuse(self, sheet: CircuitSupply) -> None:
         """Refuse a sheet with which `change` cannot continue; raises as the class."""
-        self._checked(sheet)
+        if sheet != self._sheet:
+            self._checked(sheet)
 
     def change(self, sheet: CircuitSupply) -> None:
         """

@@ -55,22 +55,22 @@ def rates(network: Network) -> tuple[Rate, Rate, Rate]:
     slopes = [_slopes(element) for element in network.elements]
     own = max((Rate(slope[2], owner, owner) for slope, owner in zip(slopes, network.owners)),
               key=lambda rate: rate.value)
+    is_held = (network.nodes['is_held'] != 0.0).tolist()
+    ends = [*zip(network.elements['inlet'].tolist(), network.elements['outlet'].tolist())]
     found = []
     for which in (0, 1):
         greatest = Rate(0.0, '', '')
-        for k, node in enumerate(network.nodes):
-            if node['is_held']:
+        for k, c in enumerate(network.nodes['c'].tolist()):
+            if is_held[k]:
                 continue
             total, most, part = 0.0, 0.0, ''
-            for element, slope, owner in zip(network.elements, slopes, network.owners):
-                ends = {int(element['inlet']), int(element['outlet'])}
-                if k in ends:
-                    is_free = not any(network.nodes[end]['is_held'] for end in ends)
+            for (inlet, outlet), slope, owner in zip(ends, slopes, network.owners):
+                if k in (inlet, outlet):
+                    is_free = not (is_held[inlet] or is_held[outlet])
                     total += slope[which] * (1.0 + is_free)
                     if slope[which] > most:
                         most, part = slope[which], owner
-            rate = total / float(node['c'])
-            rate = math.sqrt(rate) if which else rate
+            rate = math.sqrt(total / c) if which else total / c
             if rate > greatest.value:
                 greatest = Rate(rate, network.places[k], part)
         found.append(greatest)
