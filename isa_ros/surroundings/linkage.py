@@ -17,7 +17,7 @@ import math
 from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 DIRECT = 0
 SLIDER_CRANK = 1
@@ -114,18 +114,23 @@ def actuator_coordinate(q, linkage):
 
 
 @kernel
-def find_levers(angles, linkage, found):
-    """Write the lever at each of n joint angles, rad, to ``found`` (n,)  (L2)."""
+def find_motion(angles, linkage, found):
+    """Write coordinate and lever at each of n joint angles, rad, to ``found`` (2, n)  (L2)."""
     for k in range(len(angles)):
-        found[k] = actuator_coordinate(angles[k], linkage)[1]
+        found[0, k], found[1, k], _ = actuator_coordinate(angles[k], linkage)
+
+
+def motion(angles: ArrayLike, linkage: np.record) -> NDArray[np.float64]:
+    """Return the actuator's coordinate, and its lever, at each of n joint angles, (2, n)  (L2)."""
+    places = np.array(angles, float)
+    found = np.zeros((2, len(places)))
+    find_motion(places, linkage, found)
+    return found
 
 
 def levers(angles: ArrayLike, linkage: np.record) -> list[float]:
     """Return the lever at each joint angle, rad: m or 1  (L2)."""
-    places = np.array(angles, float)
-    found = np.zeros(len(places))
-    find_levers(places, linkage, found)
-    values: list[float] = found.tolist()
+    values: list[float] = motion(angles, linkage)[1].tolist()
     return values
 
 

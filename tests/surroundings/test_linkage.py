@@ -121,10 +121,11 @@ def test_a_lever_is_short_by_its_own_length_however_long_another_one_is():
 
 
 @pytest.mark.parametrize('name', LINKAGES)
-def test_levers_are_those_of_each_angle(name):
+def test_coordinates_and_levers_are_those_of_each_angle(name):
     """L2, at all angles in one call."""
     row = LINKAGES[name][0]
     angles = [-1.2, -0.7, 0.4]
-    expected = [linkage.actuator_coordinate(q, row)[1] for q in angles]
-    assert np.array_equal(linkage.levers(angles, row), expected, equal_nan=True)
+    expected = np.array([linkage.actuator_coordinate(q, row)[:2] for q in angles]).T
+    assert np.array_equal(linkage.motion(angles, row), expected, equal_nan=True)
+    assert np.array_equal(linkage.levers(angles, row), expected[1], equal_nan=True)
     assert linkage.levers([], row) == []

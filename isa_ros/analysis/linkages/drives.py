@@ -18,7 +18,7 @@ from isa_ros.core.elementary import cos, sin
 from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.robot.sheet import Points
 from isa_ros.surroundings.linkage import (
-    actuator_coordinate, DIRECT, FOUR_BAR, rod_eye)
+    actuator_coordinate, DIRECT, FOUR_BAR, motion, rod_eye)
 from isa_ros.surroundings.linkage_sheet import Joint, linkage_record
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +112,7 @@ def _one_joint(
     """Return the drive of a linkage of one joint."""
     own, row = run.actuator(actuator).sheet, linkage_record(sheet)
     reach = swept(name, True, math.radians(sheet.low_deg), math.radians(sheet.high_deg),
-                  lambda q: actuator_coordinate(q, row)[:2])
+                  lambda angles: motion(angles, row))
     ends = (reach.coordinates[0], start, reach.coordinates[-1])
     stroke = own.plant.drive.stroke
     return (sheet, start, stroke), DrawnDrive(

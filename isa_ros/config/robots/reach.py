@@ -9,7 +9,8 @@ from isa_ros.config.robots.geometry import motion_of
 from isa_ros.config.text.sections import Place
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.bodies.robot.sheet import RobotDrive, RobotSheet
+from isa_ros.surroundings.bodies.robot.sheet import JointLinkage, RobotDrive, RobotSheet
+from isa_ros.surroundings.linkage import motion
 from isa_ros.surroundings.linkage_sheet import (
     CHECKED_ANGLES, is_short, Joint, LEVER_RULE, SHORTEST_LEVER)
 import numpy as np
@@ -45,11 +46,10 @@ class Reach:
 
 def swept(
         joint: str, turns: bool, low: float, high: float,
-        at: Callable[[float], tuple[float, float]]) -> Reach:
-    """Return a drive over a range; ``at`` gives position and lever at a coordinate."""
+        at: Callable[[Floats], Floats]) -> Reach:
+    """Return a drive over a range; ``at`` gives positions and levers at coordinates, (2, n)."""
     coordinates = np.linspace(low, high, CHECKED_ANGLES)
-    positions, levers = np.array([at(float(q)) for q in coordinates]).T
-    return Reach(joint, turns, coordinates, positions, levers)
+    return Reach(joint, turns, coordinates, *at(coordinates))
 
 
 def reach_of(
@@ -84,11 +84,14 @@ def reach_of(
         raise ConfigError(place.has(
             f'lacks range, which it needs: the joint {joint.name} of the URDF is continuous'))
 
-    def at(q: float) -> tuple[float, float]:
-        pose = list(joints)
-        pose[moved[0] - 1] = q
-        x, levers = motion_of(sheet, drive, pose)
-        return x, levers[0]
+    def at(coordinates: Floats) -> Floats:
+        if isinstance(drive.linkage, JointLinkage):
+            return motion(coordinates, drive.linkage.linkage)
+        found, pose = np.zeros((2, len(coordinates))), list(joints)
+        for k, q in enumerate(coordinates.tolist()):
+            pose[moved[0] - 1] = q
+            found[0, k], (found[1, k],) = motion_of(sheet, drive, pose)
+        return found
     return swept(joint.name, turns, low, high, at)
 
 
