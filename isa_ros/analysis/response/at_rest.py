@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 import numpy as np
-from scipy import signal
 
 PUSH_S = 0.1        # the reference at its amplitude
 SETTLE_S = 1.0      # from the end of the push to the recording
@@ -53,5 +52,6 @@ def ticks_at_rest(rate: float) -> tuple[int, int]:
 
 def rest_of(output: np.ndarray, amplitude: float, rate: float) -> LoopAtRest:
     """Return the ripple in the last `RECORDED_S` of an output, (n,)."""
-    values = signal.detrend(output[-round(RECORDED_S * rate):])
+    from scipy.signal import detrend    # half a second, which steps do not need
+    values = detrend(output[-round(RECORDED_S * rate):])
     return LoopAtRest(ripple(values), ripple_frequency(values, rate), amplitude)

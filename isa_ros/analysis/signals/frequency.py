@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from isa_ros.errors import AnalysisError
 import numpy as np
-from scipy import signal
 
 HALF_POWER = 1.0 / math.sqrt(2.0)   # -3.01 dB
 TRUSTED = 0.8        # least coherence of a point that counts: the rest has half the size
@@ -168,8 +167,10 @@ def chirp_response(
             f'{len(r) / rate:g} s of a chirp in segments of {segment:g} s, must hold at '
             f'least {SEGMENTS} segments')
 
+    from scipy.signal import csd    # half a second, which sines do not need
+
     def spectrum(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        found: np.ndarray = signal.csd(a, b, fs=rate, nperseg=n, noverlap=n - n // 4)[1]
+        found: np.ndarray = csd(a, b, fs=rate, nperseg=n, noverlap=n - n // 4)[1]
         return found
     bins = np.unique(np.round(np.asarray(frequencies) * n / rate).astype(int))
     bins = bins[(bins >= 1) & (bins < n // 2)]
@@ -229,19 +230,24 @@ def margins(response: Response) -> Margins:
     with np.errstate(divide='ignore'):
         level = 20.0 * np.log10(np.abs(value))
     angle = np.unwrap(np.angle(value))
-    for k in range(1, len(value)):
-        if (level[k - 1] > 0.0) != (level[k] > 0.0):
-            at = _crossing(frequency, level, k)
-            phase = math.degrees(_between(frequency, angle, k, at))
-            phases.append(((phase + 360.0) % 360.0 - 180.0, at))
-        turns = [math.floor((angle[j] + math.pi) / (2.0 * math.pi)) for j in (k - 1, k)]
-        if turns[0] != turns[1]:
-            limit = 2.0 * math.pi * max(turns) - math.pi
-            at = _crossing(frequency, angle - limit, k)
-            gains.append((-_between(frequency, level, k, at), at))
+    turns = np.floor((angle + math.pi) / (2.0 * math.pi))
+    for k in _changes(level > 0.0):
+        at = _crossing(frequency, level, k)
+        phase = math.degrees(_between(frequency, angle, k, at))
+        phases.append(((phase + 360.0) % 360.0 - 180.0, at))
+    for k in _changes(turns):
+        limit = 2.0 * math.pi * max(turns[k - 1:k + 1].tolist()) - math.pi
+        at = _crossing(frequency, angle - limit, k)
+        gains.append((-_between(frequency, level, k, at), at))
     gain = min(gains, key=lambda margin: abs(margin[0]), default=(None, None))
     phase_margin = min(phases, key=lambda margin: abs(margin[0]), default=(None, None))
     return Margins(*gain, *phase_margin)
+
+
+def _changes(values: np.ndarray) -> list[int]:
+    """Return the points whose value is not that of the one before."""
+    found: list[int] = (np.flatnonzero(values[1:] != values[:-1]) + 1).tolist()
+    return found
 
 
 def _crossing(frequency: np.ndarray, values: np.ndarray, k: int) -> float:
@@ -265,6 +271,7 @@ def ripple(values: np.ndarray) -> float:
 
 def ripple_frequency(values: np.ndarray, rate: float) -> float:
     """Return the frequency of a ripple: of the largest peak without the drift, in Hz."""
-    window = signal.windows.hann(len(values), sym=False)
-    found = np.abs(np.fft.rfft(window * signal.detrend(values)))
+    from scipy.signal import detrend
+    from scipy.signal.windows import hann
+    found = np.abs(np.fft.rfft(hann(len(values), sym=False) * detrend(values)))
     return float((1 + int(np.argmax(found[1:]))) * rate / len(values))
