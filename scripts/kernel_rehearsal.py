@@ -31,6 +31,7 @@ from isa_ros.run.wire.answer_loop import AnswerLoop
 from isa_ros.run.wire.board import bell_of, no_board, ring_all
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.scenario.scenario import load_scenario
+from isa_ros.scripting.bag import ResultMessages
 from isa_ros.tick.source import ScheduledSource
 import numpy as np
 from scripts.kernel_objects import Objects
@@ -116,7 +117,8 @@ def _ticks_of(name: str) -> None:
     own = isa_ros.load(name)
     TickRound(own.simulation().loop.rows, 1, [], False, _LARGEST, no_board())
     bell_of(ring_all, no_board())
-    own.simulate(_TICKS * run.step_ns / NS_PER_SECOND)
+    result = own.simulate(_TICKS * run.step_ns / NS_PER_SECOND)
+    ResultMessages(own.scenario, result.log).record(_Nowhere())
     for path in shipped(SCENARIOS).values():
         with suppress(ConfigError):     # it is for actuators of another configuration
             scenario = load_scenario(path, run)

@@ -61,7 +61,7 @@ def keep(own):
     return 0
 
 
-class Column:
+class RowColumn:
     """The rows of one source by sample, in an array that grows."""
 
     def __init__(self, source: Records, n: int, *shape: int) -> None:
@@ -95,15 +95,15 @@ class LogSink(RowSink):
             self, simulation: Simulation, n_ticks: int, report: Progress | None = None) -> None:
         rows, samples = simulation.loop.rows, simulation.group.samples
         n = n_ticks + 1
-        self._samples = Column(samples, n, len(samples))
-        self._supplies = Column(rows.supplies, n, len(rows.supplies))
-        self._bodies = {name: Column(sample, n) for name, sample in rows.bodies.items()}
-        self._observed = (Column(rows.samples, n, len(samples))
+        self._samples = RowColumn(samples, n, len(samples))
+        self._supplies = RowColumn(rows.supplies, n, len(rows.supplies))
+        self._bodies = {name: RowColumn(sample, n) for name, sample in rows.bodies.items()}
+        self._observed = (RowColumn(rows.samples, n, len(samples))
                           if simulation.scenario.run.linked else None)
         self._all = [self._samples, self._supplies, *self._bodies.values()]
         if self._observed is not None:
             self._all.append(self._observed)
-        self._commands = Column(rows.applied, 0, len(rows.applied))
+        self._commands = RowColumn(rows.applied, 0, len(rows.applied))
         self._applied: dict[int, Records] = {}
         self._sent: dict[int, Records] = {}
         self._tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class Place(NamedTuple):
+class LogPlace(NamedTuple):
     """Memory of `go_on`."""
 
     sample: NDArray[np.int64]
@@ -26,7 +26,7 @@ class Place(NamedTuple):
 class Logged(NamedTuple):
     """Memory of `load`."""
 
-    place: Place
+    place: LogPlace
     rows: NDArray[np.float64]
     """Numbers by sample, (n, f)."""
     into: NDArray[np.float64]
@@ -55,7 +55,7 @@ class _LoggedEnds:
     is_settled = True
 
     def __init__(self, pairs: Sequence[tuple[Records, Records]]) -> None:
-        self._place = Place(np.zeros(1, np.int64))
+        self._place = LogPlace(np.zeros(1, np.int64))
         self.parts: Sequence[Part] = [Part(own, nothing) for own in (
             Bound(go_on, self._place), *(Bound(load, Logged(
                 self._place, floats(rows).reshape(len(rows), -1), floats(into).reshape(-1)))

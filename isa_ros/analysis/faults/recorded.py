@@ -8,7 +8,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.bound import nothing, Part
 from isa_ros.core.signals import CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
 from isa_ros.core.units import MILLI
-from isa_ros.scripting.log import Column
+from isa_ros.scripting.log import RowColumn
 from isa_ros.simulation import Simulation
 from isa_ros.text.table import digits
 from isa_ros.tick.exchange import Rows, RowSink
@@ -46,7 +46,7 @@ def recorded(
     scenario = rig.run.scenario.with_faults(faults)
     simulation = Simulation(replace(scenario, run=rig.run.configuration))
     n, loop = round(duration_s / STEP_S), simulation.loop
-    kept = _Kept(simulation, n)
+    kept = _RigRows(simulation, n)
     loop.sinks = (kept,)
     loop.begin()
     if clear_s is not None:
@@ -60,13 +60,13 @@ def recorded(
             zip(EXACT, (replies['position'], replies['force'])))
 
 
-class _Kept(RowSink):
+class _RigRows(RowSink):
     """Keeps what the actuators read and how they move, at each of so many ticks."""
 
     def __init__(self, simulation: Simulation, n_ticks: int) -> None:
         samples, replies = simulation.group.samples, simulation.loop.rows.replies
-        self.samples = Column(samples, n_ticks + 1, *samples.shape)
-        self.replies = Column(replies, n_ticks + 1, *replies.shape)
+        self.samples = RowColumn(samples, n_ticks + 1, *samples.shape)
+        self.replies = RowColumn(replies, n_ticks + 1, *replies.shape)
 
     def take(self, tick: int, rows: Rows) -> None:
         """Keep the rows of a tick."""
