@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.analysis.measured.closing import (
     changed, Closed, closed, free_of, shifted)
-from isa_ros.analysis.measured.fit import Fit, fit, LONGEST_DELAY
+from isa_ros.analysis.measured.fit import Fit, fit
 from isa_ros.analysis.measured.mapping import load_mapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
 from isa_ros.analysis.measured.playback import LONGEST_S, played, prepared, remark
@@ -126,8 +126,7 @@ def fit_cells(quantity: str, found: Fit | str) -> tuple[str, ...]:
 
 def _remark(found: Fit) -> str:
     """Return what keeps the numbers of a fit from meaning anything, '': nothing."""
-    at_end = abs(found.delay) > 0.999 * LONGEST_DELAY
-    return 'no match: the delay is at the end of its search' if at_end else ''
+    return 'no match: the delay is at the end of its search' if found.is_at_end else ''
 
 
 FIT_HEADER = ('', 'NRMSE', 'delay', 'gain', 'left', '')

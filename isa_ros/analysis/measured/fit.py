@@ -3,7 +3,8 @@ How well one signal follows another: y(t) = gain x(t - delay) + offset, and what
 
 NRMSE is the root mean square of the difference, without any fit, over the standard deviation of
 the expected signal: 0 for equal signals, about 1 for one that knows the mean only. The delay is
-that of the smallest difference after gain and offset, which are least squares at each delay.
+that of the smallest difference after gain and offset, which are least squares at each delay. It is
+searched up to `LONGEST_DELAY` or a quarter of the common time, whichever is less, either way.
 """
 
 from typing import NamedTuple
@@ -32,6 +33,8 @@ class Fit(NamedTuple):
     """NRMSE that is left after delay, gain and offset."""
     n: int
     """Samples in which both have values."""
+    is_at_end: bool = False
+    """Whether no delay of the search is better than its last one, so that there is no match."""
 
 
 def fit(expected: Signal, actual: Signal, longest: float = LONGEST_DELAY) -> Fit:
@@ -55,6 +58,7 @@ def fit(expected: Signal, actual: Signal, longest: float = LONGEST_DELAY) -> Fit
     longest = min(longest, 0.25 * float(t[-1] - t[0]))
     step = max(float(np.median(np.diff(t))), longest / 200.0)
     delays = np.arange(-longest, longest + 0.5 * step, step)
+    ends = float(delays[0]), float(delays[-1])
     for _ in range(_SEARCHES):
         lefts = [_left(t, x, actual, delay)[0] for delay in delays]
         best = int(np.argmin(lefts))
@@ -62,7 +66,8 @@ def fit(expected: Signal, actual: Signal, longest: float = LONGEST_DELAY) -> Fit
         at = float(delays[best])
         delays = np.linspace(low, high, _FINE)
     left, gain = _left(t, x, actual, at)
-    return Fit(float(np.sqrt(np.mean(difference ** 2))) / spread, at, gain, left / spread, len(t))
+    return Fit(float(np.sqrt(np.mean(difference ** 2))) / spread, at, gain, left / spread, len(t),
+               at in ends)
 
 
 def _left(t: Floats, x: Floats, actual: Signal, delay: float) -> tuple[float, float]:

@@ -58,3 +58,24 @@ def test_what_cannot_be_fitted_is_refused(
         expected: Signal, actual: Signal, problem: str) -> None:
     with pytest.raises(AnalysisError, match=problem):
         fit(expected, actual)
+
+
+@pytest.mark.parametrize('duration, delay, is_at_end', [
+    (0.4, 0.13, True), (0.4, -0.13, True), (0.4, 0.09, False), (4.0, 0.3, True),
+    (4.0, -0.3, True), (4.0, 0.13, False), (4.0, 0.0, False)])
+def test_a_delay_beyond_its_search_is_at_the_end(
+        duration: float, delay: float, is_at_end: bool) -> None:
+    """A quarter of the common time, 0.1 s of 0.4 s, or 0.25 s; a ramp that eases in and out."""
+    long = np.arange(-1.0, duration + 1.0, 0.002)
+    t = long[(long >= 0.0) & (long < duration)]
+    found = fit(*(Signal(own, np.tanh(4.0 * (own - 0.5 * duration - late)))
+                  for own, late in ((t, 0.0), (long, delay))))
+    assert found.is_at_end is is_at_end
+    longest = min(0.25, 0.25 * (duration - 0.002))
+    # the last of delays in steps of 2 ms is up to half a step beyond
+    assert abs(found.delay) == pytest.approx(longest if is_at_end else abs(delay), abs=1.1e-3)
+
+
+def test_a_signal_that_rests_matches_nowhere() -> None:
+    """No delay of it is better than another."""
+    assert fit(Signal(T, X), Signal(T, np.zeros(len(T)))).is_at_end
