@@ -71,8 +71,9 @@ def against(
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
     begun(_what(measurement, time))
-    if late := remark(run, name, measurement):
-        begun(late)
+    for line in (measurement.remark, remark(run, name, measurement)):
+        if line:
+            begun(line)
     simulated = played(run, name, measurement, time)
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
     found = closed(run, name, measurement, keys, time, progress) if keys else []

@@ -9,6 +9,7 @@ from isa_ros.analysis.measured.csv_file import Floats, read_columns
 from isa_ros.analysis.measured.mapping import (
     MappedSignal, MeasurementMapping, PLACE, VELOCITY)
 from isa_ros.analysis.measured.quantities import QUANTITIES, scale_of
+from isa_ros.analysis.measured.slope import slope_of
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.errors import BagError, ConfigError
 import numpy as np
@@ -23,6 +24,8 @@ class Measurement(NamedTuple):
 
     name: str
     signals: Mapping[str, Signal]
+    remark: str = ''
+    """What was made from them otherwise than the mapping lets expect; '': nothing."""
 
     @property
     def commands(self) -> dict[str, Signal]:
@@ -61,18 +64,15 @@ def read_measurement(path: Path, mapping: MeasurementMapping, is_rotary: bool) -
                            f'{values[k]:g}, must be finite')
         found[name] = Signal(
             _risen((t - own.delay) / (1.0 + mapping.clock), f'{path}: {name}'), values)
+    remark = ''
     if mapping.has_slope:
-        found[VELOCITY] = _slope(found[PLACE], f'{path}: {PLACE}')
-    measurement = Measurement(path.name, found)
+        if len(found[PLACE].t) < 2:
+            raise BagError(f'{path}: {PLACE}: has one sample, must have two for a slope')
+        slope = slope_of(found[PLACE])
+        found[VELOCITY], remark = slope.signal, slope.remark(VELOCITY, PLACE)
+    measurement = Measurement(path.name, found, remark)
     _refuse_gaps(path, measurement)
     return measurement
-
-
-def _slope(own: Signal, where: str) -> Signal:
-    """Return the slope of a signal at its samples, from one neighbour to the other."""
-    if len(own.t) < 2:
-        raise BagError(f'{where}: has one sample, must have two for a slope')
-    return Signal(own.t, np.gradient(own.values, own.t))
 
 
 def _risen(t: Floats, where: str) -> Floats:
