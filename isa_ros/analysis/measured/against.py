@@ -1,19 +1,23 @@
 """`isa against`: a measured machine and the simulated one, with the same commands."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from isa_ros.actuator.ratings import ratings_of
 from isa_ros.analysis.measured.closing import (
     changed, Closed, closed, free_of, shifted)
 from isa_ros.analysis.measured.fit import Fit, fit
-from isa_ros.analysis.measured.mapping import load_mapping
+from isa_ros.analysis.measured.mapping import load_mapping, MeasurementMapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
+from isa_ros.analysis.measured.plausibility import (
+    doubts_of_fits, doubts_of_speed, doubts_of_time)
 from isa_ros.analysis.measured.playback import LONGEST_S, played, prepared, remark
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
 from isa_ros.core.units import MILLI, of_coordinate
 from isa_ros.errors import AnalysisError, ConfigError
+from isa_ros.plant.plant import plant_record
 from isa_ros.scripting.run import Run
 from isa_ros.text.table import aligned, digits
 
@@ -71,18 +75,32 @@ def against(
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
     begun(_what(measurement, time))
-    for line in (measurement.remark, remark(run, name, measurement)):
+    for line in (*_doubts(run, name, measurement, own), measurement.remark,
+                 remark(run, name, measurement)):
         if line:
             begun(line)
     simulated = played(run, name, measurement, time)
+    fits = _fits(measurement.outputs, simulated)
+    for line in doubts_of_fits(fits, own, is_rotary):
+        begun(line)
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
     found = closed(run, name, measurement, keys, time, progress) if keys else []
     values = {each.free.key: each.value for each in found}
     improved = played(changed(run, name, values), name, measurement, time) if found else {}
     moved = {quantity: shifted(signal, values) for quantity, signal in measurement.outputs.items()}
     return Against(
-        name, is_rotary, moved, simulated, _fits(measurement.outputs, simulated), found, improved,
-        _fits(moved, improved))
+        name, is_rotary, moved, simulated, fits, found, improved, _fits(moved, improved))
+
+
+def _doubts(
+        run: Run, name: str, measurement: Measurement, mapping: MeasurementMapping
+        ) -> Iterator[str]:
+    """Yield what speaks for a wrong unit before anything is simulated."""
+    sheet = run.configuration.actuator(name).sheet
+    yield from doubts_of_time(measurement, mapping)
+    yield from doubts_of_speed(
+        measurement, ratings_of(plant_record(sheet.plant)[0]).speed,
+        unit_of('velocity', sheet.is_rotary))
 
 
 def _time(measurement: Measurement, duration: float | None, step: float) -> float:
@@ -98,7 +116,7 @@ def _time(measurement: Measurement, duration: float | None, step: float) -> floa
 
 def _what(measurement: Measurement, time: float) -> str:
     """Return how much is compared: its samples, their rate and the simulated time."""
-    t = max((own.t for own in measurement.outputs.values()), key=len)
+    t = measurement.times
     span = float(t[-1] - t[0])
     rate = f' at {digits((len(t) - 1) / span, 4)} Hz' if span > 0.0 else ''
     return (f'{measurement.name}: {len(t)} samples, {digits(span, 4)} s{rate}; '

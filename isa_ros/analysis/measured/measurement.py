@@ -28,6 +28,11 @@ class Measurement(NamedTuple):
     """What was made from them otherwise than the mapping lets expect; '': nothing."""
 
     @property
+    def times(self) -> Floats:
+        """Return the times of the output with the most samples."""
+        return max((own.t for own in self.outputs.values()), key=len)
+
+    @property
     def commands(self) -> dict[str, Signal]:
         """Return the signals that commanded the machine."""
         return {name: own for name, own in self.signals.items() if QUANTITIES[name].mode}

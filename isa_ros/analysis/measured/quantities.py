@@ -54,10 +54,12 @@ def scale_of(unit: str, quantity: Quantity, is_rotary: bool, where: str) -> floa
         The unit is not of this quantity.
 
     """
-    si = of_coordinate(quantity.unit, is_rotary)
-    if unit == si:
-        return 1.0
-    if unit in UNITS and UNITS[unit].si == si:
-        return UNITS[unit].scale
-    known = [si, *(name for name, own in UNITS.items() if own.si == si)]
-    raise ConfigError(f'{where}: unit = {unit!r}, must be one of {listed(known)}')
+    known = units_of(of_coordinate(quantity.unit, is_rotary))
+    if unit not in known:
+        raise ConfigError(f'{where}: unit = {unit!r}, must be one of {listed([*known])}')
+    return known[unit]
+
+
+def units_of(si: str) -> dict[str, float]:
+    """Return the units of what has an SI unit, itself first, with the SI units in each."""
+    return {si: 1.0} | {name: own.scale for name, own in UNITS.items() if own.si == si}
