@@ -5,7 +5,7 @@ import struct
 from typing import NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from msg_adapters.cdr import ENCAPSULATION, put_length, put_string
+from msg_adapters.cdr import ENCAPSULATION, Message, put_length, put_string
 from msg_adapters.cdr_reader import decode
 from msg_adapters.template import stamp
 
@@ -13,6 +13,7 @@ TYPE = 'diagnostic_msgs/msg/DiagnosticArray'
 TOPIC = ('/diagnostics', TYPE)
 
 OK = DiagnosticStatus.OK
+LEVEL, MESSAGE = 'level', 'message'     # what a status has beside its values
 DIGITS = 9      # of a number in a message
 _STAMP = struct.Struct('<iI')
 
@@ -52,6 +53,15 @@ def pack(t_ns: int, statuses: Sequence[Status]) -> bytes:
 
 def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f'{value:.{DIGITS}g}'
+
+
+def texts_of(message: Message) -> dict[str, dict[str, str]] | None:
+    """Return level, values by key and message of each status by its name; None: no statuses."""
+    if not isinstance(message, DiagnosticArray):
+        return None
+    return {status.name: {LEVEL: str(ord(status.level)), **{
+        pair.key: pair.value for pair in status.values}, MESSAGE: status.message}
+        for status in message.status}
 
 
 def values(data: bytes, task: str) -> dict[str, dict[str, str]]:

@@ -93,13 +93,13 @@ def compare(options: Namespace) -> bool:
         from isa_ros.cli.measured_commands import compare as compare_measured
         return compare_measured(options)
     from isa_ros.bag.reader import Bag
-    from isa_ros.replay.comparison import compared
+    from isa_ros.replay.comparison import compared, names_of_runs
     from isa_ros.replay.tolerances import load_tolerances
     from isa_ros.text.json_file import write_tree
     expected, actual = Bag(options.expected), Bag(options.actual)
     tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
     comparison = compared(expected, actual, tolerances)
-    for line in comparison.lines('expected', 'actual'):
+    for line in comparison.lines(*names_of_runs(options.expected, options.actual)):
         print(one_line(line))
     if options.json:
         write_tree(comparison.tree(), options.json)

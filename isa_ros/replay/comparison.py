@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.bag.reader import Bag
@@ -60,6 +61,12 @@ class Comparison(NamedTuple):
             'end_ns': self.report.end_ns,
             'keys': [_json(key._asdict()) for key in self.keys or ()],
             'topics': [_json(_tree(topic)) for topic in self.report.topics]}
+
+
+def names_of_runs(expected: Path, actual: Path) -> tuple[str, str]:
+    """Return how two bags are called in tables: as they are given, unless that is one name."""
+    names = str(expected), str(actual)
+    return names if names[0] != names[1] else ('expected', 'actual')
 
 
 def key_lines(

@@ -11,6 +11,7 @@ from typing import Any
 
 from isa_ros.bag.reader import Bag, BagMessage
 from isa_ros.errors import BagError
+from isa_ros.replay.diagnostic_fields import differing_values
 from isa_ros.replay.difference import Deviation, FirstDifference, TopicDifference
 from isa_ros.replay.tolerances import Tolerances
 from msg_adapters.cdr import CdrError, encode, Message
@@ -195,14 +196,26 @@ class TopicComparison:
 
 
 def _fields(one: Message, other: Message) -> Pairs:
-    """Return the fields of two messages as columns of one row, up to an unequal non-float."""
-    pairs: Pairs = {}
+    """
+    Return the fields of two messages as columns of one row, up to an unequal non-float.
+
+    Of diagnostics only what differs, by status and key, unless only their order does.
+    """
+    pairs: Pairs = {
+        field: _column_pair(*values) for field, *values in differing_values(one, other)}
+    if pairs:
+        return pairs
     for (field, expected), (_, actual) in zip(flatten(one), flatten(other)):
-        dtype = np.float64 if isinstance(expected, float) else object
-        pairs[field] = np.array([expected], dtype), np.array([actual], dtype)
-        if dtype is object and expected != actual:
+        pairs[field] = _column_pair(expected, actual)
+        if pairs[field][0].dtype == object and expected != actual:
             break  # after a length the fields of the two no longer correspond
     return pairs
+
+
+def _column_pair(expected: Any, actual: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return two values as columns of one row."""
+    dtype = np.float64 if isinstance(expected, float) else object
+    return np.array([expected], dtype), np.array([actual], dtype)
 
 
 def _is_same(one: Floats, other: Floats) -> NDArray[np.bool_]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
+from isa_ros.replay.comparison import names_of_runs
 from isa_ros.run import provenance
 import pytest
 from tests.bag.golden import rewrite
@@ -69,10 +70,11 @@ def test_a_gain_that_differs_comes_first(
     assert compare(bags, 'kp') == 1
     head, columns, key, first, table, *topics = capsys.readouterr().out.splitlines()
     assert head == 'configuration, scenario or versions differ:'
-    assert columns.split() == ['key', 'expected', 'actual', 'unit']
+    names = [str(bags['one']), str(bags['kp'])]
+    assert columns.split() == ['key', *names, 'unit']
     assert key.split() == [KP, '8e-08', '9e-08', 'm/N']
     assert first.startswith('differ: tick ')
-    assert table.split()[:3] == ['topic', 'messages', 'from']
+    assert table.split()[:3] == ['topic', 'messages', 'from'] and table.split()[-4:-2] == names
     assert len(topics) > 4
     line = next(topic.split() for topic in topics if topic.startswith('/ram/valve '))
     _, _, _, field, tick, expected, actual, deviation, allowed = line
@@ -81,6 +83,12 @@ def test_a_gain_that_differs_comes_first(
     # six digits of each value, three of the deviation
     assert float(deviation) == pytest.approx(
         abs(float(actual) - float(expected)), rel=0.01, abs=1e-5 * abs(float(expected)))
+
+
+def test_a_bag_beside_itself_is_expected_and_actual() -> None:
+    one, other = Path('runs/one'), Path('runs/../runs/one')
+    assert names_of_runs(one, other) == ('runs/one', 'runs/../runs/one')
+    assert names_of_runs(one, one) == ('expected', 'actual')
 
 
 def test_a_setpoint_of_the_scenario_is_named(
