@@ -6,7 +6,8 @@ from scripts.reference.markup import escaped, page, table
 
 _OWN = (
     (ending.DONE, 'done'),
-    (ending.ANSWER_IS_NO, 'a check failed: bags differ, a value is not reached, a loop hunts'),
+    (ending.ANSWER_IS_NO, 'a check failed: bags differ, a value is not reached, a loop hunts, or '
+     'with `--fail-on-trip` a condition of an actuator tripped'),
     (ending.WRONG_INPUT, 'a command, file or value that cannot be used'),
     (ending.NOT_COMPLETED, 'a run or a file that could not be completed'),
     (errors.SimulationDiverged.exit_code, 'a simulation that diverged'),
@@ -14,7 +15,9 @@ _OWN = (
     (ending.INTERRUPTED, 'interrupted by Ctrl-C, SIGTERM or SIGHUP'))
 _TAIL = """\
 An error is one line on the error output; `--debug` or `{variable}=1` adds the traceback. Nodes
-that end only by a signal exit with 0."""
+that end only by a signal exit with 0. A run in which a [condition](../protection.md) of an
+actuator tripped ends with 0 as others do; with `--fail-on-trip`, of `isa bringup`, `isa bus` and
+`isa view` (`fail_on_trip:=true` of a launch file), it ends with 1."""
 
 
 def exit_codes_page() -> str:

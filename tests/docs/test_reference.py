@@ -52,6 +52,15 @@ def test_exit_codes_are_those_of_the_errors() -> None:
     assert '| `isa_ros.errors.BagError` | 2 |' in page and '| 130 | interrupted' in page
 
 
+def test_commands_that_may_fail_on_a_trip_are_those_of_the_page() -> None:
+    """As the page of commands has them, which is made from their parsers."""
+    sections = cli.cli_page().split('\n## ')[1:]
+    own = [section.split()[1] for section in sections if '`--fail-on-trip`' in section]
+    assert own == ['bringup', 'bus', 'view']
+    page = ' '.join(exit_codes.exit_codes_page().split())
+    assert 'with `--fail-on-trip`, of `isa bringup`, `isa bus` and `isa view`' in page
+
+
 def test_markdown_takes_no_text_for_markup() -> None:
     assert markup.escaped('a  <b>\n*c* | d & e') == r'a &lt;b> \*c\* or d &amp; e'
     assert markup.docstring('A.\n\nRaises\n------\nX\n    ``y``::\n\n    z') == (
