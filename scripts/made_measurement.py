@@ -48,21 +48,22 @@ class PositionSweep(Controller):
 def measured(
         directory: Path, duration: float, changes: Mapping[str, float], *, noise: float = 1.0,
         clock_ppm: float = CLOCK_PPM, machine: str | Mapping[str, Any] = 'rig_linear',
-        has_velocity: bool = False) -> tuple[Path, Path]:
+        has_velocity: bool = False, delay: float = 0.0, seed: int = 5) -> tuple[Path, Path]:
     """
-    Return a CSV file of a machine with ``changes``, and its mapping; seed 5 of the noise.
+    Return a CSV file of a machine with ``changes``, and its mapping; ``seed`` of the noise.
 
     ``has_velocity``: it was commanded with the velocity too, which the file does not have.
+    ``delay``, s: what it shows is so much later than its commands.
     """
     sweep = PositionSweep(has_velocity)
     result = isa_ros.load(machine, changes=changes).simulate(duration, [sweep])
-    random = np.random.default_rng(5)
+    random = np.random.default_rng(seed)
     t = result.time
     columns = [1e3 * t, [1e3 * wanted(own) for own in t]]
     for name, scale, offset, spread in (
             ('position', -1e3, 100.0, 0.005), ('force', 1e-3, 0.0, 0.01),
             ('pressure_a', 1e-5, 0.0, 0.3), ('pressure_b', 1e-5, 0.0, 0.3)):
-        shown = np.interp(t, t * (1.0 + 1e-6 * clock_ppm), result[f'ram.{name}'])
+        shown = np.interp(t, t * (1.0 + 1e-6 * clock_ppm) + delay, result[f'ram.{name}'])
         columns.append(scale * shown + offset + noise * random.normal(0.0, spread, len(t)))
     path, mapping = directory / 'press.csv', directory / 'press.yaml'
     np.savetxt(path, np.stack(columns, axis=1), '%.6f', ',',

@@ -45,13 +45,16 @@ PRESS: dict[str, Any] = {
 LOOP = 'reu.position.stiffness', 'reu.position.damping'
 
 
+def place_of(key: str) -> str:
+    """Return the key of a run file by that of a free parameter of our own machine."""
+    return f'actuators.ram.{"" if key.startswith("load") else "parameters."}{key}'
+
+
 def own_run(duration: float, free: Sequence[str] = tuple(TRUE)) -> Against:
     """Return our own machine, measured for ``duration`` s, against rig_linear."""
-    places = {key: f'actuators.ram.{"" if key.startswith("load") else "parameters."}{key}'
-              for key in TRUE if key != 'clock_ppm'}
+    changes = {place_of(key): TRUE[key] for key in TRUE if key != 'clock_ppm'}
     with TemporaryDirectory() as folder:
-        path, mapping = measured(
-            Path(folder), duration, {place: TRUE[key] for key, place in places.items()})
+        path, mapping = measured(Path(folder), duration, changes)
         return against(path, mapping, isa_ros.load('rig_linear'), free)
 
 

@@ -21,7 +21,8 @@ def against_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--free', action='append', default=[], metavar='KEY[=LOW:HIGH]',
         help='a parameter of plant, reu or load that may change to close the gap, or clock_ppm, '
-             'delay_ms; may be repeated (default: inertia, viscous friction, bulk modulus); none')
+             'delay_ms; may be repeated (default: inertia, viscous friction, bulk modulus, '
+             'delay_ms); none')
     parser.add_argument(
         '--duration', type=positive, metavar='S', help='only the first S seconds')
     changes(parser, 'another value of CONFIG, by its key and in its unit')

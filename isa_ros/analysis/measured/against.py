@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
 from isa_ros.analysis.measured.closing import (
-    changed, Closed, closed, free_of, shifted)
+    changed, Closed, closed, DELAY, delay_left, free_of, shifted)
 from isa_ros.analysis.measured.fit import Fit, fit
 from isa_ros.analysis.measured.mapping import load_mapping, MeasurementMapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
@@ -39,6 +39,8 @@ class Against(NamedTuple):
     improved: Mapping[str, Signal]
     """Simulated with the closed parameters; empty without free ones."""
     improved_fits: Mapping[str, Fit | str]
+    late: Closed | None = None
+    """The delay that the parameters make up for, if they do."""
 
 
 def actuator_of(run: Run, wanted: str | None) -> str:
@@ -74,11 +76,10 @@ def against(
         raise ConfigError(f'{own.name}: has commands only, nothing to compare a simulation with')
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
-    begun(_what(measurement, time))
-    for line in (*_doubts(run, name, measurement, own), measurement.remark,
-                 remark(run, name, measurement)):
-        if line:
-            begun(line)
+    for line in filter(None, (
+            _what(measurement, time), *_doubts(run, name, measurement, own), measurement.remark,
+            remark(run, name, measurement))):
+        begun(line)
     simulated = played(run, name, measurement, time)
     fits = _fits(measurement.outputs, simulated)
     for line in doubts_of_fits(fits, own, is_rotary):
@@ -86,10 +87,13 @@ def against(
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
     found = closed(run, name, measurement, keys, time, progress) if keys else []
     values = {each.free.key: each.value for each in found}
-    improved = played(changed(run, name, values), name, measurement, time) if found else {}
+    run = changed(run, name, values)
+    improved = played(run, name, measurement, time) if found else {}
     moved = {quantity: shifted(signal, values) for quantity, signal in measurement.outputs.items()}
+    by_clock = measurement._replace(signals={**measurement.commands, **moved})
+    late = delay_left(run, name, by_clock, time) if found and DELAY not in values else None
     return Against(
-        name, is_rotary, moved, simulated, fits, found, improved, _fits(moved, improved))
+        name, is_rotary, moved, simulated, fits, found, improved, _fits(moved, improved), late)
 
 
 def _doubts(
@@ -161,6 +165,9 @@ def as_text(found: Against) -> str:
             *(_cells(own, found.is_rotary) for own in found.parameters)], 'lrrlll'),
             '', 'with them', *aligned([FIT_HEADER, *(
                 fit_cells(*row) for row in found.improved_fits.items())], 'lrrrrl')]
+    if found.late:
+        lines += ['', f'the parameters make up for a delay: {found.late.value:.2g} +- '
+                  f'{found.late.half_width:.2g} ms of it are left; add --free {DELAY}']
     return '\n'.join(lines)
 
 
@@ -186,7 +193,8 @@ def as_tree(found: Against, path: Path) -> dict[str, Any]:
             'value': own.value, 'is_determined': own.is_determined,
             'half_width': own.half_width if own.half_width < float('inf') else None}
             for own in found.parameters],
-        'closed': of(found.improved_fits)}
+        'closed': of(found.improved_fits),
+        'delay_left_ms': found.late.value if found.late else None}
 
 
 def unit_of(quantity: str, is_rotary: bool) -> str:

@@ -8,6 +8,8 @@ hold for this model: what it lacks, the parameters take upon them.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
+from functools import lru_cache
+from itertools import count
 from typing import Any, NamedTuple
 
 from isa_ros.analysis.measured.fit import Floats
@@ -21,15 +23,21 @@ from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.scripting.run import Run
 import numpy as np
 
-DEFAULT = ('load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus')
-"""Keys that are free if none are named, as far as the actuator has them."""
-
 CLOCK, DELAY = 'clock_ppm', 'delay_ms'
 """Free keys of the measurement itself: its clock and its delay against those of its commands."""
+
+MACHINE = ('load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus')
+DEFAULT = (*MACHINE, DELAY)
+"""
+Keys that are free if none are named, as far as the actuator has them.
+
+Of a log that is 1 ms late they would make up for its delay; free, it costs no runs.
+"""
 
 REACH = 10.0            # a parameter is searched between a tenth and ten times its value
 CORRELATION = 0.4       # s, as for `isa identify`
 WIDEST = 0.5            # half of an interval over the estimate, beyond which it is not determined
+LEAST_LATE_MS = 0.1     # a tenth of a tick; without a delay 0.03 ms were left
 POINTS = 2000           # samples of a signal among the residuals, at most
 _RANGES = {CLOCK: (-1000.0, 1000.0, 100.0), DELAY: (-50.0, 50.0, 1.0)}
 """Bounds, and size of a step."""
@@ -138,6 +146,25 @@ def changed(run: Run, name: str, values: Mapping[str, float]) -> Run:
         for key, value in values.items() if key not in _RANGES})
 
 
+def _simulations(
+        simulated: Callable[[Mapping[str, float]], Mapping[str, Signal]],
+        progress: Callable[[int], object], n_kept: int
+        ) -> Callable[[Mapping[str, float]], Mapping[str, Signal]]:
+    """
+    Return what simulates with values by free key, and tells the number of runs.
+
+    The last ones are kept: where only values of the measurement differ, nothing is simulated.
+    """
+    runs = count(1)
+
+    @lru_cache(maxsize=n_kept)
+    def of(machine: tuple[tuple[str, float], ...]) -> Mapping[str, Signal]:
+        progress(next(runs))
+        return simulated(dict(machine))
+    return lambda values: of(tuple(
+        (key, value) for key, value in values.items() if key not in _RANGES))
+
+
 def closed(
         run: Run, name: str, measurement: Measurement, free: Sequence[Free], duration: float,
         progress: Callable[[int], object] = lambda n: None) -> list[Closed]:
@@ -149,15 +176,15 @@ def closed(
     size = np.array([own.size for own in free])
     grid = _grid(measurement, duration)
     start: Floats | None = None
-    n_runs = 0
+    simulated_with = _simulations(
+        lambda values: played(changed(run, name, values), name, measurement, duration),
+        progress, 2 * len(free) + 1)    # from one slope by the delay to the next
 
     def residuals(theta: Floats) -> Floats:
-        nonlocal start, n_runs
+        nonlocal start
         values = dict(zip([own.key for own in free], (theta * size).tolist()))
-        n_runs += 1
-        progress(n_runs)
         try:
-            simulated = played(changed(run, name, values), name, measurement, duration)
+            simulated = simulated_with(values)
         except (ParameterError, SimulationDiverged):
             if start is None:
                 raise
@@ -172,6 +199,18 @@ def closed(
     found = searched(residuals, np.array([own.start for own in free]) / size, box, lags)
     return [Closed(own, float(x * own.size), float(width * own.size))
             for own, x, width in zip(free, found.theta, found.half_widths)]
+
+
+def delay_left(
+        run: Run, name: str, measurement: Measurement, duration: float) -> Closed | None:
+    """
+    Return the delay of a measurement against a run with parameters that were found without it.
+
+    It is less than the one that they make up for. None: it is none, or less than `LEAST_LATE_MS`.
+    """
+    found, = closed(run, name, measurement, free_of(run, name, [DELAY]), duration)
+    is_late = abs(found.value) - found.half_width > LEAST_LATE_MS
+    return found if is_late else None
 
 
 def shifted(signal: Signal, values: Mapping[str, float]) -> Signal:

@@ -7,7 +7,7 @@ import warnings
 
 import isa_ros
 from isa_ros.actuator.setpoint_range import LIMIT, SetpointRange
-from isa_ros.analysis.measured.against import against, as_text, fit_cells, NONE
+from isa_ros.analysis.measured.against import against, as_text, as_tree, fit_cells, NONE
 from isa_ros.analysis.measured.closing import free_of
 from isa_ros.analysis.measured.fit import Fit
 from isa_ros.analysis.measured.mapping import load_mapping
@@ -74,6 +74,30 @@ def test_the_parameters_of_the_machine_are_found(press: tuple[Path, Path]) -> No
     assert text[0].startswith('ram, simulated against measured')
     assert any(line.split()[:2] == ['load.inertia', '50'] and line.endswith('kg')
                for line in text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('late_ms', 'clock_ppm', 'is_told'), [
+    (0.0, 150.0, False), (2.0, 0.0, True)])
+def test_a_delay_that_parameters_make_up_for_is_told(
+        tmp_path: Path, late_ms: float, clock_ppm: float, is_told: bool) -> None:
+    """Without a free delay_ms; a clock that was found makes none."""
+    path, mapping = measured(
+        tmp_path, DURATION, TRUE, clock_ppm=clock_ppm, delay=1e-3 * late_ms)
+    keys = ['plant.friction.viscous', *(['clock_ppm'] if clock_ppm else [])]
+    run = isa_ros.load('rig_linear', changes={'actuators.ram.load.inertia': 65.0})
+    found = against(path, mapping, run, keys)
+    text, tree = as_text(found), as_tree(found, path)
+    assert ('the parameters make up for a delay: ' in text) is is_told is bool(found.late)
+    assert found.late is None or 0.1 < found.late.value < late_ms
+    assert tree['delay_left_ms'] == (found.late.value if found.late else None)
+
+
+def test_a_delay_that_was_free_is_not_asked_for_again(
+        press: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr('isa_ros.analysis.measured.against.delay_left')
+    found = against(*press, isa_ros.load('rig_linear'), ['delay_ms'], 0.5)
+    assert found.parameters and found.late is None
 
 
 @pytest.mark.slow
@@ -247,7 +271,7 @@ def test_free_parameters_have_their_declared_bounds() -> None:
     [given] = free_of(run, 'ram', ['plant.mechanics.backlash=0:1e-4'])
     assert (given.start, given.low, given.high, given.size) == (0.0, 0.0, 1e-4, 2.5e-5)
     assert [own.key for own in free_of(run, 'ram', [])] == [
-        'load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus']
+        'load.inertia', 'plant.friction.viscous', 'plant.oil.effective_bulk_modulus', 'delay_ms']
 
 
 @pytest.mark.parametrize('key, expected', [

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 
 from isa_ros.analysis.measured import closing
-from isa_ros.analysis.measured.closing import Closed, closed, Free, shifted
+from isa_ros.analysis.measured.closing import (
+    _simulations, Closed, closed, delay_left, Free, shifted)
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.search import Minimum
 from isa_ros.analysis.signals.signals import Signal
@@ -83,3 +84,62 @@ def test_residuals_may_hang_together_over_40_samples_of_10_ms(
     monkeypatch.setattr(closing, 'searched', searched)
     closed(None, 'ram', Measurement('m', {'position': Signal(T, SWING)}), [free()], 3.0)
     assert seen == [40]
+
+
+DELAY = Free('delay_ms', 0.0, -50.0, 50.0, 1.0, 'ms')
+
+
+def late(delay: float) -> Measurement:
+    """Return a swing of 1.3 times the size, late by a delay in s, with little noise."""
+    noise = np.random.default_rng(3).normal(0.0, 1e-3, len(T))
+    return Measurement('m', {'position': Signal(T, 1.3 * np.sin(
+        2.0 * np.pi * 0.7 * (T - delay)) + noise)})
+
+
+@pytest.fixture
+def swing(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Play a swing of a size, and return the sizes that were played."""
+    sizes: list[float] = []
+
+    def played(run: Mapping[str, float], *given: object) -> dict[str, Signal]:
+        sizes.append(run.get('load.inertia', 1.3))
+        return {'position': Signal(T, sizes[-1] * SWING)}
+    monkeypatch.setattr(closing, 'changed', lambda run, name, values: values)
+    monkeypatch.setattr(closing, 'played', played)
+    return sizes
+
+
+def test_a_free_delay_costs_few_runs(swing: list[float]) -> None:
+    """Of most of its slopes the run is one of the last; the delay is a sample."""
+    runs: list[int] = []
+    size, delay = closed(None, 'ram', late(0.01), [free(), DELAY], 3.0, runs.append)
+    assert runs == list(range(1, len(swing) + 1)) and len(swing) < 1.3 * len(set(swing))
+    assert abs(size.value - 1.3) < size.half_width < 0.1
+    assert abs(delay.value - 10.0) < 0.1 and delay.half_width < 0.1
+
+
+def test_runs_that_differ_in_the_measurement_alone_are_one() -> None:
+    """As many of the last ones as are to be kept; each that is simulated is told."""
+    played: list[Mapping[str, float]] = []
+    runs: list[int] = []
+
+    def simulated(values: Mapping[str, float]) -> dict[str, Signal]:
+        played.append(values)
+        return {}
+    of = _simulations(simulated, runs.append, 2)
+    for inertia, delay in (
+            (5.0, 0.0), (6.0, 0.0), (5.0, 1.0), (7.0, 1.0), (5.0, -1.0), (6.0, 0.0)):
+        of({'load.inertia': inertia, 'delay_ms': delay, 'clock_ppm': -delay})
+    assert [own['load.inertia'] for own in played] == [5.0, 6.0, 7.0, 6.0]
+    assert runs == [1, 2, 3, 4] and all(len(own) == 1 for own in played)
+
+
+@pytest.mark.parametrize(('delay_ms', 'is_late'), [
+    (0.0, False), (12.0, True), (-12.0, True), (0.1, False)])
+def test_a_delay_that_is_left_is_found_by_one_run(
+        monkeypatch: pytest.MonkeyPatch, swing: list[float], delay_ms: float, is_late: bool
+        ) -> None:
+    monkeypatch.setattr(closing, 'free_of', lambda run, name, keys: [DELAY])
+    found = delay_left({}, 'ram', late(1e-3 * delay_ms), 3.0)
+    assert len(swing) == 1 and bool(found) is is_late
+    assert not found or found.value == pytest.approx(delay_ms, rel=0.01)
