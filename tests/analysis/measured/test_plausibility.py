@@ -83,7 +83,7 @@ def test_without_a_position_there_is_no_speed() -> None:
     ('position', 'm', 0.0254, 1e-3, 'in, not m'),
     ('position', 'mm', 100.0, 1e-3, 'or scale another'),
     ('force', 'N', 340.0, 0.1, 'kN, not N'), ('force', 'N', 310.0, 0.1, 'or scale another'),
-    ('force', 'N', -1000.0, 1.0, '')])
+    ('force', 'N', -1000.0, 1.0, ''), ('force', 'N', 0.0, 0.0, '')])
 def test_a_signal_many_times_as_large_is_doubted(
         quantity: str, unit: str, gain: float, left: float, expected: str) -> None:
     """Not where the courses differ: what is left is of the simulated signal."""
