@@ -13,7 +13,7 @@ from isa_ros.run.recorders import Recorder
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log
-from isa_ros.scripting.logged_ticks import LoggedTicks
+from isa_ros.scripting.quiet_log import QuietLog
 from isa_ros.tick.exchange import Rows
 
 
@@ -50,7 +50,7 @@ class ResultMessages:
             self._packer, self._run.step_ns, self._thinning.recorder(recorder))
         last, tick = len(self._samples) - 1, 0
         self._take(tick, output)
-        quiet = LoggedTicks(self._log, self._rows, self._run.step_ns)
+        quiet = QuietLog(self._log, self._rows, self._run.step_ns)
         while tick < last:
             # the last one is not for kernels: diagnostics end it
             tick += quiet.run(tick, last - 1 - tick, output) + 1

@@ -70,7 +70,7 @@ class _LoggedEnds:
         return False
 
 
-class LoggedTicks:
+class QuietLog:
     """The ticks of a log in which nothing unusual happens, for a sink of its rows."""
 
     def __init__(self, log: Log, rows: Rows, step_ns: int) -> None:

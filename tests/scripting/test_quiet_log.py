@@ -5,7 +5,7 @@ from typing import Any
 
 import isa_ros
 from isa_ros.scripting.log import Log
-from isa_ros.scripting.logged_ticks import LoggedTicks
+from isa_ros.scripting.quiet_log import QuietLog
 from isa_ros.scripting.result import Result
 from isa_ros.tick.exchange import Rows, RowSink
 import numpy as np
@@ -40,15 +40,15 @@ def test_it_has_the_same_bytes(
     own = isa_ros.load('rig_linear', changes=LINK) if name == 'linked' else isa_ros.load(
         name, scenario)
     result = own.simulate(n * 1e-3, **given)
-    run = LoggedTicks.run
+    run = QuietLog.run
 
-    def counted(own: LoggedTicks, tick: int, most: int, sink: RowSink) -> int:
+    def counted(own: QuietLog, tick: int, most: int, sink: RowSink) -> int:
         kept.append(run(own, tick, most, sink))
         return kept[-1]
-    monkeypatch.setattr(LoggedTicks, 'run', counted)
+    monkeypatch.setattr(QuietLog, 'run', counted)
     by_kernels = bytes_of(result, tmp_path / 'kernels')
     assert sum(kept) >= least * n and (sum(kept) > 0) == (least > 0.0)
-    monkeypatch.setattr(LoggedTicks, 'run', lambda *given: 0)
+    monkeypatch.setattr(QuietLog, 'run', lambda *given: 0)
     assert bytes_of(result, tmp_path / 'python') == by_kernels
     assert bool(result.log.events) == ('controllers' in given)
 
@@ -59,4 +59,4 @@ def test_what_has_another_form_is_left_to_python(tmp_path: Path) -> None:
     rows = Rows(3, isa_ros.load('leg').simulation().surroundings)
     bodies = {'body': np.zeros(11, [('position', 'f8')])}
     log: Log = result.log._replace(bodies=bodies)
-    assert LoggedTicks(log, rows, 1_000_000).run(0, 5, RowSink()) == 0
+    assert QuietLog(log, rows, 1_000_000).run(0, 5, RowSink()) == 0
