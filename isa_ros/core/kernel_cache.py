@@ -7,22 +7,19 @@ argument types, the processor, and the versions of the compiler. So an edit comp
 on it and nothing else, an edit taken back finds the old files until they are swept, and sources
 at another path share the files.
 
-No lock is needed: a file is written aside and then renamed, and two processes that compile the
-same kernel write the same. numba's own cache does not notice an edit in another file, and finds
-kernels by the path of their source.
+numba's own cache does not notice an edit in another file, and finds kernels by the path of their
+source.
 """
 
 import contextlib
 from functools import cache
 import hashlib
-import os
 from pathlib import Path
 import pickle
 import sys
-import tempfile
-import time
 from typing import Any
 
+from isa_ros.core.kept_files import read_kept, write_kept
 from isa_ros.core.kernel_directory import digest_text, READ
 from isa_ros.core.kernel_key import is_unchanged
 from isa_ros.core.kernel_library import SETTINGS
@@ -37,15 +34,11 @@ from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 import numpy as np
 
-_FORM = 2                   # of a file; others are not read
-_NOTED_AFTER = 600.0        # s; a use that soon after the one before is not noted
-_KEPT_TIME = 30 * 86400.0   # s, since a kernel was last loaded
-_KEPT_BYTES = 512 << 20     # about thirty times the kernels of this package
-_DIGEST_BYTES = 16
+_FORM = 2   # of a file; others are not read
 
 
 @cache
-def _say_not_kept(reason: str) -> None:
+def say_not_kept(reason: str) -> None:
     """Print one line, once in a process."""
     print(f'isa_ros: compiled kernels cannot be kept, {reason}: every start compiles them, for a '
           'minute or more; set NUMBA_CACHE_DIR to a directory of your own', file=sys.stderr)
@@ -58,60 +51,6 @@ def environment() -> str:
     return repr((sys.implementation.cache_tag, sys.version_info[:2], numba.__version__,
                  llvmlite.__version__, np.__version__.split('.')[:2],
                  [str(getattr(settings, name, None)) for name in SETTINGS]))
-
-
-def _check(name: str, body: bytes | memoryview) -> bytes:
-    """Return the digest by which a damaged or renamed file is noticed."""
-    check = hashlib.blake2b(name.encode(), digest_size=_DIGEST_BYTES)
-    check.update(body)
-    return check.digest()
-
-
-def _read(path: Path) -> Any:
-    """Return what a file holds, None if there is none or it is damaged."""
-    try:
-        data = path.read_bytes()
-        used = path.stat().st_mtime
-    except OSError:
-        return None
-    body = memoryview(data)[_DIGEST_BYTES:]
-    if _check(path.name, body) != data[:_DIGEST_BYTES]:
-        return None
-    if time.time() - used > _NOTED_AFTER:
-        with contextlib.suppress(OSError):
-            os.utime(path)      # the time of last use, for `_sweep`
-    return pickle.loads(body)
-
-
-def _write(path: Path, reduced: Any) -> None:
-    """Write a file aside and put it in place."""
-    body: bytes = dumps(reduced)  # type: ignore[no-untyped-call]
-    handle, aside = tempfile.mkstemp(prefix='.', suffix='.part', dir=path.parent)
-    try:
-        with os.fdopen(handle, 'wb') as file:
-            file.write(_check(path.name, body) + body)
-        os.replace(aside, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(aside)
-        raise
-
-
-@cache
-def _sweep(directory: Path) -> None:
-    """Delete, once in a process, files not used for long, and the longest unused beyond a size."""
-    earlier_form = directory.parent.glob('[0-9a-f]' * 16 + '/*/*.nb[ci]')
-    found = []
-    for path in (*directory.iterdir(), *earlier_form):
-        with contextlib.suppress(OSError):
-            status = path.stat()
-            found.append((status.st_mtime, status.st_size, path))
-    oldest, total = time.time() - _KEPT_TIME, 0
-    for used, size, path in sorted(found, reverse=True):
-        total += size
-        if used < oldest or total > _KEPT_BYTES:
-            with contextlib.suppress(OSError):
-                path.unlink()
 
 
 class _Library(JITCodeLibrary):
@@ -204,11 +143,11 @@ class KernelCache(_Cache):
             name = self._name(sig, target_context.codegen())
             try:
                 for directory in self._read:
-                    kept = _read(directory / name)
+                    kept = read_kept(directory / name)
                     if kept is not None:
-                        return _rebuilt(target_context, *kept)
+                        return _rebuilt(target_context, *pickle.loads(kept))
             except Exception as error:  # of numba: the file is whole, and of this version
-                _say_not_kept(f'as loading them fails with {error!r}')
+                say_not_kept(f'as loading them fails with {error!r}')
         return None
 
     def save_overload(self, sig: Any, cres: Any) -> None:
@@ -218,17 +157,16 @@ class KernelCache(_Cache):
         if cres.library.has_dynamic_globals or cres.lifted:
             return
         if self._write is None:
-            _say_not_kept('no directory is writable')
+            say_not_kept('no directory is writable')
             return
         try:
             if is_unchanged(self._kernel):
-                self._write.mkdir(mode=0o700, parents=True, exist_ok=True)
-                _write(self._write / self._name(sig, cres.codegen), _reduced(cres))
-                _sweep(self._write)
+                path = self._write / self._name(sig, cres.codegen)
+                write_kept(path, dumps(_reduced(cres)))  # type: ignore[no-untyped-call]
         except UnknownValue as error:
-            _say_not_kept(f'as {self._kernel.__name__} names a value of type {error}')
+            say_not_kept(f'as {self._kernel.__name__} names a value of type {error}')
         except OSError as error:
-            _say_not_kept(error.strerror or str(error))
+            say_not_kept(error.strerror or str(error))
 
 
 def cache_of(kernel: Any, directory: Path | None, read: tuple[Path, ...] = READ) -> KernelCache:

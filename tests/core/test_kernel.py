@@ -58,7 +58,7 @@ def test_a_numba_that_cannot_load_what_it_kept_is_one_line(make, monkeypatch, ca
     """Silence would mean that every start compiles."""
     assert make('own')(3) == 6
     monkeypatch.setattr(kernel_cache, 'compile_result', lambda **_: {}['missing'])
-    kernel_cache._say_not_kept.cache_clear()
+    kernel_cache.say_not_kept.cache_clear()
     loaded = make('own')
     assert loaded(3) == 6
     assert sum(loaded.stats.cache_misses.values()) == 1

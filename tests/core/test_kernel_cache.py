@@ -135,11 +135,11 @@ def twice(x):
 def test_a_full_disk_is_one_line_and_the_kernel_runs(
         monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
-    kernel_cache._say_not_kept.cache_clear()
+    kernel_cache.say_not_kept.cache_clear()
     monkeypatch.setattr(kernels, 'CACHE', tmp_path)
     compiled = kernels.kernel(twice)
     monkeypatch.setattr(
-        kernel_cache, '_write', lambda *_: (_ for _ in ()).throw(OSError(28, 'full')))
+        kernel_cache, 'write_kept', lambda *_: (_ for _ in ()).throw(OSError(28, 'full')))
     assert (compiled(3), compiled(1.5)) == (6, 3.0)
     line, = capsys.readouterr().err.splitlines()
     assert 'cannot be kept, full' in line
@@ -167,31 +167,6 @@ def test_only_the_user_and_root_are_trusted(owner: int, mode: int, expected: boo
             return os.stat_result((0o40000 | mode, 0, 0, 0, owner, 0, 0, 0, 0, 0))
 
     assert kernel_directory._is_trusted(Directory()) is expected  # type: ignore[arg-type]
-
-
-def filled(directory: Path, sizes_and_days: Mapping[str, tuple[int, float]]) -> None:
-    """Make files of these sizes that were used so many days ago."""
-    for name, (size, days) in sizes_and_days.items():
-        path = directory / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open('wb') as file:
-            file.truncate(size)     # takes no room
-        used = time.time() - days * 86_400.0
-        os.utime(path, (used, used))
-
-
-def test_what_is_old_or_too_much_is_swept(tmp_path: Path) -> None:
-    """The earlier form had a directory for each state of the sources; other files stay."""
-    earlier = '0123456789abcdef/plant/valve.nbc'
-    filled(tmp_path, {
-        'kernels/used': (100, 29.9), 'kernels/unused': (100, 30.1), 'kernels/.part': (100, 31.0),
-        earlier: (100, 31.0), 'other/file': (100, 99.0)})
-    kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
-    left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob('*') if path.is_file()}
-    assert left == {'kernels/used', 'other/file'}
-    filled(tmp_path, {f'kernels/{days}': (200 << 20, days) for days in (1, 2, 3)})
-    kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
-    assert {path.name for path in (tmp_path / 'kernels').iterdir()} == {'1', '2'}
 
 
 def test_what_is_loaded_counts_as_used(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
