@@ -15,7 +15,6 @@ from argparse import ArgumentParser
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
-import gc
 import multiprocessing
 import os
 from pathlib import Path
@@ -27,7 +26,7 @@ import time
 from typing import Any, NamedTuple, TextIO
 
 from isa_ros.core.kernel_library import own_targets, SHIPPED
-from isa_ros.core.lowering import declare, lower_only
+from isa_ros.core.lowering import declare, lower_long
 from isa_ros.core.objects import library_of, own_target, Target, TARGETS
 from isa_ros.text.progress import terminal_line
 from scripts.kernel_objects import Objects
@@ -50,18 +49,6 @@ class Job(NamedTuple):
 def make(wanted: WantedKernel, objects: Objects) -> dict[str, str]:
     """Make the objects of an entry; return why a target has none."""
     return objects.make(wanted.entry)
-
-
-def lower_long() -> None:
-    """
-    Let this process lower kernels only, for as long as it lives.
-
-    What the compiler keeps is seldom looked through for what nobody refers to: an eighth of the
-    time, and 80 MB more.
-    """
-    gc.freeze()
-    gc.set_threshold(100_000, 20, 100)
-    lower_only()
 
 
 @contextmanager

@@ -53,6 +53,10 @@ class Kernel:
             raise AttributeError(name)
         return getattr(self.compiled, name)
 
+    def __reduce__(self) -> str:
+        """Return the name by which another process finds it in its module."""
+        return self.py_func.__qualname__
+
     @cached_property
     def compiled(self) -> Any:
         """Return the kernel as the compiler has it."""

@@ -7,7 +7,7 @@ kernel takes and are removed. Its machine code gives the same bytes as that comp
 the same instructions of LLVM, which nothing may reorder or contract.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import json
 from pathlib import Path
 import shutil
@@ -76,17 +76,40 @@ def object_of(entries: Mapping[str, KernelEntry], target: Target) -> bytes:
         The object would have undefined symbols; they are named.
 
     """
+    return _emitted(_linked(entries), ', '.join(entries), target)
+
+
+def bitcode_of(entries: Mapping[str, KernelEntry]) -> bytes:
+    """Return what `object_of` makes the objects of all targets of, for `object_of_bitcode`."""
+    code: bytes = _linked(entries).as_bitcode()
+    return code
+
+
+def object_of_bitcode(bitcode: bytes, names: Iterable[str], target: Target) -> bytes:
+    """Return the object of entries by `bitcode_of` and their names; raises as `object_of`."""
+    return _emitted(llvm.parse_bitcode(bitcode), ', '.join(names), target)
+
+
+def _linked(entries: Mapping[str, KernelEntry]) -> Any:
+    """Return a module of entries and what they call, optimised for this processor."""
+    target = own_target()
     machine = _machine(target)
     whole = _retargeted(llvm.parse_assembly(RUNTIME), target, machine)
     for name, entry in entries.items():
         whole.link_in(_retargeted(_module_of(name, entry), target, machine))
     _remove_unused(whole, machine)
-    undefined = _foreign_instructions(whole, target)
-    code: bytes = b'' if undefined else machine.emit_object(whole)
+    return whole
+
+
+def _emitted(module: Any, names: str, target: Target) -> bytes:
+    """Return the object of a module; raises as `object_of`."""
+    machine = _machine(target)
+    undefined = _foreign_instructions(module, target)
+    code: bytes = b'' if undefined else machine.emit_object(
+        _retargeted(module, target, machine))
     undefined = undefined or undefined_symbols(code)
     if undefined:
-        raise ConfigError(
-            f'object of {", ".join(entries)}: undefined {", ".join(undefined)}, must have none')
+        raise ConfigError(f'object of {names}: undefined {", ".join(undefined)}, must have none')
     return code
 
 

@@ -2,7 +2,6 @@
 
 import ctypes
 import math
-from pathlib import Path
 import subprocess
 
 from isa_ros.core.bound import Bound, table_of
@@ -10,7 +9,7 @@ from isa_ros.core.elf import Symbol, symbols, undefined_symbols
 from isa_ros.core.kernel import entry_of, kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import (
-    assembled, library_of, object_of, own_target, Target, TARGETS)
+    assembled, bitcode_of, library_of, object_of, object_of_bitcode, own_target, Target, TARGETS)
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -67,9 +66,13 @@ def test_only_the_entries_are_seen(entries, name):
 
 
 @pytest.mark.parametrize('name', ['x86-64', own_target().name])
-def test_a_library_gives_the_same_bytes(entries, name, tmp_path):
+@pytest.mark.parametrize('is_stored', [False, True])
+def test_a_library_gives_the_same_bytes(entries, name, is_stored, tmp_path):
+    """Also by bitcode, of which objects of all targets can be made later."""
     out = tmp_path / 'lib.so'
-    library_of([object_of(entries, TARGETS[name])], out)
+    code = (object_of_bitcode(bitcode_of(entries), entries, TARGETS[name]) if is_stored
+            else object_of(entries, TARGETS[name]))
+    library_of([code], out)
     own, other = numbers(), numbers()
     assert loaded(out, 'isa_call')(own) == Bound(call_all, other).run() == -7
     assert own.numbers.tobytes() == other.numbers.tobytes()
@@ -157,6 +160,12 @@ def share_array(own):
     return len(half)
 
 
+def test_undefined_symbols_of_bitcode_are_refused():
+    code = bitcode_of({'isa_sine': entry_of(take_sine, kind_of(numbers()))})
+    with pytest.raises(ConfigError, match=r'^object of a, b: undefined sin, must have none$'):
+        object_of_bitcode(code, ('a', 'b'), own_target())
+
+
 @pytest.mark.parametrize('name', ['x86-64', 'aarch64'])
 def test_kernels_that_allocate_are_refused(name):
     """LLVM ends the process where another processor lacks an instruction."""
@@ -191,32 +200,3 @@ def test_the_own_target(monkeypatch):
     monkeypatch.setattr(llvm, 'get_process_triple', lambda: 'riscv64-unknown-linux-gnu')
     with pytest.raises(ConfigError, match='processor riscv64: no target, valid: x86-64-v3'):
         own_target()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize('name', ['x86-64', own_target().name])
-def test_a_tick_is_the_same_bytes(name, tmp_path):
-    """All actuators of the leg over 100 ticks with steps of their setpoints."""
-    from isa_ros.actuator.ticking import tick_kernel
-    from isa_ros.config.assembly import group_of
-    from isa_ros.config.paths import CONFIG, find
-    from isa_ros.config.runs.run_file import load_run
-    from isa_ros.core.signals import HAS_SETPOINT
-    out = Path(tmp_path, 'lib.so')
-    library_of([object_of({'isa_tick': tick_kernel()}, TARGETS[name])], out)
-    tick = loaded(out, 'isa_tick')
-    groups = [group_of(load_run(find('leg', CONFIG))) for _ in range(2)]
-    for k in range(100):
-        found = []
-        for group in groups:
-            own = group.ticked
-            own.ports['supply_pressure'] = 20.7e6
-            own.ports['x0'] = own.memory.samples['position']
-            own.commands['kinds'] = HAS_SETPOINT if k % 20 == 0 else 0
-            own.commands['position'] = own.memory.samples['position'] + 1e-3 * (k % 7 - 3)
-            found.append(group.tick.run() if group is groups[0] else tick(own))
-        assert found == [0, 0], k
-    first, second = (group.ticked.memory for group in groups)
-    assert np.ptp(first.samples['spool']) > 0.0
-    for name, own, other in zip(first._fields, first, second):
-        assert own.tobytes() == other.tobytes(), name
