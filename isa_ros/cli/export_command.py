@@ -54,7 +54,8 @@ def export(options: argparse.Namespace) -> bool:
     from isa_ros.core.objects import own_target
     from isa_ros.export.chosen import choose
     from isa_ros.export.directory import refuse_foreign, write
-    from isa_ros.export.library import compile_kernels, compiler_of, processor_of, target_of
+    from isa_ros.export.kernels import are_kept
+    from isa_ros.export.library import compiler_of, processor_of, target_of
     from isa_ros.text.progress import underway
     target = own_target() if options.target is None else target_of(options.target)
     compiler_of(options.compiler, processor_of(target))
@@ -66,8 +67,9 @@ def export(options: argparse.Namespace) -> bool:
                    'the values of your data sheets')
     written = (_units if options.fmu else _library)(chosen, target, options)
     refuse_foreign(options.out, written.names)
-    compile_kernels(written.kernels)
-    print_line(f'machine code for {target.name} takes 10 to 20 s')
+    if not are_kept(written.kernels, target):
+        print_line(f'machine code for {target.name} takes 10 to 30 s, once after an installation '
+                   'or an edit')
     with underway(sys.stderr, 'machine code'):
         files = written.files()
     write(options.out, files)
@@ -77,11 +79,11 @@ def export(options: argparse.Namespace) -> bool:
 
 
 class _Written(NamedTuple):
-    """Files of an export by name, those that are printed, and the kernels in them."""
+    """Files of an export by name, those that are printed, and the kernels of each object."""
 
     names: Collection[str]
     shown: Collection[str]
-    kernels: 'Collection[Called]'
+    kernels: 'Collection[Collection[Called]]'
     files: Callable[[], Mapping[str, bytes]]
 
 
@@ -89,7 +91,7 @@ def _library(chosen: 'ChosenActuator', target: 'Target', options: argparse.Names
     from isa_ros.export.exported import exported
     from isa_ros.export.library import library, names_of
     own = exported(chosen, name=options.name)
-    return _Written(names_of(own), (f'{own.word}.h', f'lib{own.word}.so'), own.kernels,
+    return _Written(names_of(own), (f'{own.word}.h', f'lib{own.word}.so'), (own.kernels,),
                     lambda: library(own, target, options.compiler))
 
 
@@ -97,5 +99,5 @@ def _units(chosen: 'ChosenActuator', target: 'Target', options: argparse.Namespa
     from isa_ros.export.fmi.unit import parts_of, units
     own = parts_of(chosen, options.name)
     names = own.files
-    return _Written(names, names, (*own.own.kernels, *own.supply.kernels),
+    return _Written(names, names, own.kernels,
                     lambda: units(own, target, options.compiler))

@@ -1,20 +1,17 @@
 """An actuator as a shared library of C: its kernels, and the text beside them."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 import re
 import shutil
 import subprocess
 import tempfile
 
-from isa_ros.core.compiler import compiled_entry
-from isa_ros.core.kernel import entry_of, KernelEntry
-from isa_ros.core.kinds import kind_of
-from isa_ros.core.objects import object_of, Target, TARGETS
+from isa_ros.core.objects import Target, TARGETS
 from isa_ros.errors import ConfigError
-from isa_ros.export.exported import Called, Exported
+from isa_ros.export.exported import Exported
 from isa_ros.export.header import filled, header, source
+from isa_ros.export.kernels import objects_of
 from isa_ros.export.tables import tables
 
 EXAMPLES = ('example.c', 'example.cpp')
@@ -25,26 +22,17 @@ FLAGS = ('-std=c11', '-O2', '-fPIC', '-fvisibility=hidden', '-ffreestanding',
 _FUNCTION = re.compile(r'^ISA_EXPORT .*\bISA\((\w+)\)', re.MULTILINE)
 
 
-def entries_of(kernels: Iterable[Called]) -> dict[str, KernelEntry]:
-    """Return kernels without Python around them by the names of their machine code."""
-    return {one.name: entry_of(one.function, kind_of(one.memory)) for one in kernels}
-
-
-def compile_kernels(kernels: Iterable[Called]) -> None:
-    """Compile kernels that are not kept, of which `object_of` would make all at once."""
-    for entry in entries_of(kernels).values():
-        compiled_entry(entry)
-
-
 def kernels_of(own: Exported, target: Target) -> bytes:
-    """Return the object of the kernels of an actuator; those of all are the same."""
-    return _object(tuple(entries_of(own.kernels).items()), target)
+    """
+    Return the object of the kernels of an actuator; those of all are the same.
 
+    Raises
+    ------
+    RunError
+        As `isa_ros.export.kernels.objects_of`.
 
-@cache
-def _object(kernels: tuple[tuple[str, KernelEntry], ...], target: Target) -> bytes:
-    """Return the object of kernels by their names."""
-    return object_of(dict(kernels), target)
+    """
+    return objects_of((own.kernels,), target)[0]
 
 
 def texts(own: Exported) -> Mapping[str, str]:
@@ -79,6 +67,8 @@ def library(own: Exported, target: Target, compiler: str = 'cc') -> Mapping[str,
     ------
     ConfigError
         There is no such C compiler, or it fails, with its first line.
+    RunError
+        As `kernels_of`.
 
     """
     word = own.word

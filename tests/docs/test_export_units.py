@@ -45,7 +45,7 @@ def test_the_program_of_the_page_runs(parts, tmp_path, monkeypatch):
     (tmp_path / 'my_units').mkdir()
     for name, content in made.items():
         (tmp_path / 'my_units' / name).write_bytes(content)
-        assert len(content) == pytest.approx(250e3, rel=0.1)
+        assert len(content) == pytest.approx(150e3, rel=0.1)
     monkeypatch.chdir(tmp_path)
     found = {}
     exec(program, found)

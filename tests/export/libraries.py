@@ -7,6 +7,7 @@ from isa_ros.core.signals import (
     COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, START, SUPPLY_PORT, SUPPLY_REPLY)
 from isa_ros.export.library import library
 import numpy as np
+from tests.kernels import make_exported
 
 ALIGNED = 16
 BEHIND = 56     # bytes of a saved state behind a snapshot of Python: digest, fed and checksum
@@ -25,7 +26,9 @@ def sealed(state):
 def written(own, directory, target=None):
     """Write the library of an actuator, for this processor, to a directory; return its path."""
     directory.mkdir(parents=True, exist_ok=True)
-    for name, content in library(own, target or own_target()).items():
+    target = target or own_target()
+    make_exported(own, target)
+    for name, content in library(own, target).items():
         (directory / name).write_bytes(content)
     return directory / f'lib{own.word}.so'
 

@@ -1,10 +1,15 @@
 """A library of an actuator: its files need nothing, and are the same every time."""
 
+import ctypes
 import re
 import subprocess
 
+from isa_ros.config.assembly import group_of
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.core.bound import table_of
 from isa_ros.core.elf import symbols
-from isa_ros.core.objects import own_target, TARGETS
+from isa_ros.core.objects import library_of, own_target, TARGETS
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import choose
@@ -75,6 +80,30 @@ def test_kernels_of_every_target_need_nothing(own, name):
     found = list(symbols(kernels_of(own, TARGETS[name])))
     assert all(symbol.is_defined for symbol in found)
     assert {'kernel_group_tick', 'kernel_start_actuator'} <= {symbol.name for symbol in found}
+
+
+@pytest.mark.parametrize('name', ['x86-64', own_target().name])
+def test_its_tick_is_that_of_all_actuators_of_a_run(own, name, tmp_path):
+    """Those of the leg, over 100 ticks with steps of their setpoints."""
+    library_of([kernels_of(own, TARGETS[name])], tmp_path / 'lib.so')
+    tick = ctypes.CDLL(str(tmp_path / 'lib.so'))['kernel_group_tick']
+    tick.restype, tick.argtypes = ctypes.c_int64, [ctypes.c_void_p]
+    groups = [group_of(load_run(find('leg', CONFIG))) for _ in range(2)]
+    for k in range(100):
+        found = []
+        for group in groups:
+            rows = group.ticked
+            rows.ports['supply_pressure'] = 20.7e6
+            rows.ports['x0'] = rows.memory.samples['position']
+            rows.commands['kinds'] = HAS_SETPOINT if k % 20 == 0 else 0
+            rows.commands['position'] = rows.memory.samples['position'] + 1e-3 * (k % 7 - 3)
+            found.append(group.tick.run() if group is groups[0]
+                         else tick(table_of(rows).ctypes.data))
+        assert found == [0, 0], k
+    first, second = (group.ticked.memory for group in groups)
+    assert np.ptp(first.samples['spool']) > 0.0
+    for name, rows, others in zip(first._fields, first, second):
+        assert rows.tobytes() == others.tobytes(), name
 
 
 def test_every_target_of_this_processor_gives_the_same_bytes(own, loaded, tmp_path):

@@ -7,10 +7,10 @@ from io import BytesIO
 from typing import NamedTuple
 import zipfile
 
-from isa_ros.core.objects import object_of, Target
+from isa_ros.core.objects import Target
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.export.chosen import ChosenActuator
-from isa_ros.export.exported import Exported, exported
+from isa_ros.export.exported import Called, Exported, exported
 from isa_ros.export.fmi import tables
 from isa_ros.export.fmi.description import About, description, Version
 from isa_ros.export.fmi.supply import supplied, UnitSupply
@@ -18,7 +18,8 @@ from isa_ros.export.fmi.table import variables
 from isa_ros.export.fmi.tuned import tuned, TunedValue
 from isa_ros.export.fmi.variables import Variable
 from isa_ros.export.header import filled
-from isa_ros.export.library import built, entries_of, kernels_of, processor_of, texts
+from isa_ros.export.kernels import objects_of
+from isa_ros.export.library import built, processor_of, texts
 
 PLATFORMS: Mapping[str, Mapping[Version, str]] = {
     'x86_64': {Version.FMI2: 'linux64', Version.FMI3: 'x86_64-linux'},
@@ -48,6 +49,11 @@ class UnitParts(NamedTuple):
         """Return the versions by the names of their files."""
         return {f'{self.own.word}_fmi{version.value[0]}.fmu': version for version in Version}
 
+    @property
+    def kernels(self) -> tuple[tuple[Called, ...], ...]:
+        """Return the kernels of each object: of the actuator, and of the supply."""
+        return self.own.kernels, self.supply.kernels
+
 
 class UnitContent(NamedTuple):
     """What both versions of a unit are made of."""
@@ -56,7 +62,7 @@ class UnitContent(NamedTuple):
     token: str
     sources: Mapping[str, str]
     """Texts of C by file."""
-    objects: tuple[bytes, bytes]
+    objects: tuple[bytes, ...]
     """Kernels of the actuator, and of the supply."""
     processor: str
 
@@ -78,15 +84,23 @@ def parts_of(chosen: ChosenActuator, name: str | None = None) -> UnitParts:
 
 
 def units(parts: UnitParts, target: Target, compiler: str = 'cc') -> dict[str, bytes]:
-    """Return the files of a unit, one a version, by name; raises as `archive`."""
+    """Return the files of a unit, one a version, by name; raises as `made` and `archive`."""
     own = made(parts, target)
     return {name: archive(own, version, compiler) for name, version in parts.files.items()}
 
 
 def made(parts: UnitParts, target: Target) -> UnitContent:
-    """Return what the units are made of for a kind of processor."""
+    """
+    Return what the units are made of for a kind of processor.
+
+    Raises
+    ------
+    RunError
+        As `isa_ros.export.kernels.objects_of`.
+
+    """
     own, supply, may_change, table = parts
-    objects = kernels_of(own, target), object_of(entries_of(supply.kernels), target)
+    objects = objects_of(parts.kernels, target)
     of_library = texts(own)
     sources = {
         f'{own.word}.c': of_library[f'{own.word}.c'] + filled(

@@ -17,6 +17,7 @@ from isa_ros.export.fmi.inputs import PORT_FIELDS
 from isa_ros.export.fmi.unit import archive, made, parts_of, UnitContent
 from isa_ros.surroundings.supply_sample import SUPPLY_FIELDS
 import numpy as np
+from tests.kernels import make_exported
 
 MOTIONS = parse("""
 name: motions
@@ -96,7 +97,9 @@ def case_of(name: str, directory: Path) -> Case:
         ticks.append(Tick(*(own[row].copy() for own in (
             rows.ports, rows.commands, rows.samples, rows.replies)), supplies[at].copy()))
     chosen = ChosenActuator(run.configuration, {}, row, {})
-    own = made(parts_of(chosen), own_target())
+    parts = parts_of(chosen)
+    make_exported(parts.own, own_target())
+    own = made(parts, own_target())
     paths = {version: directory / f'unit{version.value[0]}.fmu' for version in Version}
     for version, path in paths.items():
         path.write_bytes(archive(own, version))
