@@ -65,8 +65,30 @@ def msg_to_command(message: JointState, name: str) -> np.void:
         NAME has no number at all; the whole message is rejected.
 
     """
-    return _command(message, name, [
-        name, *(f'{name}/{entry}' for entry in (*GAINS_OF_COMMAND, *REFERENCES))])
+    names = list(message.name)
+    references = [entry for entry in REFERENCES if f'{name}/{entry}' in names]
+    if name not in names and not references:
+        raise SetpointError(f'{name}: is not among the joints of the setpoint, {listed(names)}')
+    _check(message, name, names)
+    command: np.void = np.zeros(1, dtype=COMMAND)[0]
+    if name in names:
+        command['kinds'] = HAS_SETPOINT
+        _fill_motion(message, name, names.index(name), command)
+    for gain in GAINS_OF_COMMAND:
+        entry = f'{name}/{gain}'
+        command[gain] = message.position[names.index(entry)] if entry in names else math.nan
+        if command[gain] < 0.0:
+            raise SetpointError(f'{entry} = {command[gain]}, must be >= 0')
+        if entry in names and name not in names:
+            command['kinds'] = HAS_GAINS
+    if len(references) > 1:
+        raise SetpointError(
+            f'{name}: setpoint has {" and ".join(references)}, must be the one of its mode')
+    for entry in references:
+        command['kinds'] |= HAS_REFERENCE
+        command['mode'] = REFERENCES[entry]
+        command['reference'] = message.position[names.index(f'{name}/{entry}')]
+    return command
 
 
 def msg_to_commands(message: JointState, joints: Sequence[str]) -> dict[str, np.void]:
@@ -113,21 +135,14 @@ def applied_to_command(data: bytes, name: str) -> np.void:
         the bytes are not a JointState.
 
     """
-    message = decode(data, JointState)
-    names = applied_names(name)
-    if list(message.name) not in (names, names[:_BEFORE_DEVICE]):
-        raise SetpointError(
-            f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
-    command = _command(message, name, names)
-    for field in ARRAYS:
-        _finite(f'{name}: setpoint {field}', float(command[field]))
-    command['kinds'] = HAS_SETPOINT | HAS_ENABLE
-    values = dict(zip(_APPLIED, message.position[1:]))
-    for entry, most in (('enabled', 1), ('mode', len(MODES) - 1),
-                        ('changed', EVERY_KIND | WAS_REFUSED)):
-        if entry in values:
-            command[_APPLIED[entry]] = _whole(f'{name}/{entry}', values[entry], most)
-    command['reference'] = values.get('reference', 0.0)
+    values = _recorded(data, name, 'applied', _BEFORE_DEVICE)
+    for entry, value in values.items():
+        _finite(f'{name}: applied {entry}', value)
+    command = _row_of(values, name)
+    if 'mode' in values:
+        command['mode'] = _whole(f'{name}/mode', values['mode'], len(MODES) - 1)
+        command['reference'] = values['reference']
+        command['kinds'] = _whole(f'{name}/changed', values['changed'], EVERY_KIND | WAS_REFUSED)
     if int(command['kinds']) & WAS_REFUSED:
         command['kinds'] = int(command['kinds']) ^ WAS_REFUSED
         command['is_enabled'] = 1 - int(command['is_enabled'])
@@ -146,12 +161,8 @@ def applied_kinds(data: bytes, name: str) -> int:
         The bytes are not a JointState.
 
     """
-    message = decode(data, JointState)
-    names = applied_names(name)
-    if list(message.name) != names or len(message.position) != len(names):
-        raise SetpointError(
-            f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
-    return _whole(f'{name}/changed', message.position[-1], EVERY_KIND | WAS_REFUSED)
+    values = _recorded(data, name, 'applied')
+    return _whole(f'{name}/changed', values['changed'], EVERY_KIND | WAS_REFUSED)
 
 
 def sent_to_command(data: bytes, name: str) -> np.void:
@@ -169,52 +180,60 @@ def sent_to_command(data: bytes, name: str) -> np.void:
         the bytes are not a JointState.
 
     """
-    message = decode(data, JointState)
-    names = applied_names(name)
-    if list(message.name) != names or any(
-            len(getattr(message, field)) != len(names) for field in ARRAYS):
-        raise SetpointError(
-            f'{name}: sent setpoint names {listed(message.name)}, must name {listed(names)} with '
-            'all values of each')
-    command: np.void = np.zeros(1, COMMAND)[0]
-    first = {field: getattr(message, field)[0] for field in ARRAYS}
-    if not all(map(math.isnan, first.values())):
-        for field, value in first.items():
-            command[field] = _finite(f'{name}: sent {field}', value)
-        command['kinds'] = HAS_SETPOINT
-    values = dict(zip(_APPLIED, message.position[1:]))
-    for gain in GAINS_OF_COMMAND:
-        if math.isinf(values[gain]) or values[gain] < 0.0:
-            raise SetpointError(
-                f'{name}/{gain} = {values[gain]}, must be finite and >= 0, or NaN')
-        command[gain] = values[gain]
-    enabled = values['enabled']
-    if not math.isnan(enabled):
-        if enabled not in (0.0, 1.0):
-            raise SetpointError(f'{name}/enabled = {enabled}, must be 0.0, 1.0 or NaN')
-        command['kinds'] |= HAS_ENABLE
-        command['is_enabled'] = int(enabled)
+    values = _recorded(data, name, 'sent')
+    command = _row_of(values, name)
     kinds = _whole(f'{name}/changed', values['changed'], EVERY_KIND)
+    if not kinds:
+        raise SetpointError(f'{name}: sent setpoint without a value')
     if kinds & (HAS_SETPOINT | HAS_ENABLE) != command['kinds']:
         raise SetpointError(f'{name}/changed = {kinds}, must name the values that are not NaN')
     if kinds & (HAS_MODE | HAS_REFERENCE):
-        mode = values['mode']
-        if not (0 < mode < len(MODES) and mode == int(mode)):
-            raise SetpointError(
-                f'{name}/mode = {mode}, must be a whole number > 0 and < {len(MODES)}')
-        command['mode'] = int(mode)
+        command['mode'] = _whole(f'{name}/mode', values['mode'], len(MODES) - 1, 1)
     if kinds & HAS_REFERENCE:
         command['reference'] = _finite(f'{name}/reference', values['reference'])
-    if not kinds:
-        raise SetpointError(f'{name}: sent setpoint without a value')
     command['kinds'] = kinds
     return command
 
 
-def _whole(what: str, value: float, most: int) -> int:
-    """Return a value that is a whole number >= 0 and <= ``most``."""
-    if not (0 <= value <= most and value == int(value)):
-        raise SetpointError(f'{what} = {value}, must be a whole number <= {most}')
+def _recorded(data: bytes, name: str, what: str, fewest: int | None = None) -> dict[str, float]:
+    """
+    Return the numbers of a recorded setpoint: of the first entry by array, of the others by entry.
+
+    It may have the first ``fewest`` entries alone; None: it must have all.
+    """
+    message = decode(data, JointState)
+    names = applied_names(name)
+    n = len(message.name)
+    if list(message.name) not in (names, names[:fewest]) or any(
+            len(getattr(message, field)) != n for field in ARRAYS):
+        raise SetpointError(
+            f'{name}: {what} setpoint names {listed(message.name)}, must name {listed(names)} '
+            'with all values of each')
+    return {**{field: getattr(message, field)[0] for field in ARRAYS},
+            **dict(zip(_APPLIED, message.position[1:]))}
+
+
+def _row_of(values: Mapping[str, float], name: str) -> np.void:
+    """Return the COMMAND row of those recorded motions, gains and states that are not NaN."""
+    command: np.void = np.zeros(1, COMMAND)[0]
+    if not all(math.isnan(values[field]) for field in ARRAYS):
+        command['kinds'] = HAS_SETPOINT
+        for field in ARRAYS:
+            command[field] = _finite(f'{name}: recorded {field}', values[field])
+    for gain in GAINS_OF_COMMAND:
+        if math.isinf(values[gain]) or values[gain] < 0.0:
+            raise SetpointError(f'{name}/{gain} = {values[gain]}, must be finite and >= 0, or NaN')
+        command[gain] = values[gain]
+    if not math.isnan(values['enabled']):
+        command['kinds'] |= HAS_ENABLE
+        command['is_enabled'] = _whole(f'{name}/enabled', values['enabled'], 1)
+    return command
+
+
+def _whole(what: str, value: float, most: int, least: int = 0) -> int:
+    """Return a value that is a whole number >= ``least`` and <= ``most``."""
+    if not (least <= value <= most and value == int(value)):
+        raise SetpointError(f'{what} = {value}, must be a whole number of {least} to {most}')
     return int(value)
 
 
@@ -225,39 +244,17 @@ def _finite(what: str, value: float) -> float:
     return value
 
 
-def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
-    names = list(message.name)
-    references = [entry for entry in REFERENCES if f'{name}/{entry}' in names]
-    if name not in names and not references:
-        raise SetpointError(f'{name}: is not among the joints of the setpoint, {listed(names)}')
-    _check(message, name, names, known)
-    command: np.void = np.zeros(1, dtype=COMMAND)[0]
-    if name in names:
-        k = names.index(name)
-        command['kinds'] = HAS_SETPOINT
-        if not any(getattr(message, field)[k:k + 1] for field in ARRAYS):
-            raise SetpointError(f'{name}: setpoint has neither position, velocity nor effort')
-        for field, absent in zip(ARRAYS, (math.nan, 0.0, 0.0)):
-            values = getattr(message, field)
-            command[field] = values[k] if k < len(values) else absent
-    for gain in GAINS_OF_COMMAND:
-        entry = f'{name}/{gain}'
-        command[gain] = message.position[names.index(entry)] if entry in names else math.nan
-        if command[gain] < 0.0:
-            raise SetpointError(f'{entry} = {command[gain]}, must be >= 0')
-        if entry in names and name not in names:
-            command['kinds'] = HAS_GAINS
-    if len(references) > 1:
-        raise SetpointError(
-            f'{name}: setpoint has {" and ".join(references)}, must be the one of its mode')
-    for entry in references:
-        command['kinds'] |= HAS_REFERENCE
-        command['mode'] = REFERENCES[entry]
-        command['reference'] = message.position[names.index(f'{name}/{entry}')]
-    return command
+def _fill_motion(message: JointState, name: str, k: int, command: np.void) -> None:
+    """Fill position, velocity and effort of entry ``k``, of which one must be there."""
+    if not any(getattr(message, field)[k:k + 1] for field in ARRAYS):
+        raise SetpointError(f'{name}: setpoint has neither position, velocity nor effort')
+    for field, absent in zip(ARRAYS, (math.nan, 0.0, 0.0)):
+        values = getattr(message, field)
+        command[field] = values[k] if k < len(values) else absent
 
 
-def _check(message: JointState, name: str, names: list[str], known: Sequence[str]) -> None:
+def _check(message: JointState, name: str, names: list[str]) -> None:
+    known = [name, *(f'{name}/{entry}' for entry in (*GAINS_OF_COMMAND, *REFERENCES))]
     unknown = [entry for entry in names if entry not in known]
     if unknown:
         raise SetpointError(

@@ -94,13 +94,16 @@ def test_the_times_are_those_of_sampling_and_of_effect():
 @pytest.mark.parametrize('changes, message', [
     ({'name': ['hip']}, 'sent setpoint names hip, must name hip, hip/stiffness'),
     ({'position': [0.1, math.nan, math.nan, 0.5, *OTHERS]},
-     'enabled = 0.5, must be 0.0, 1.0 or NaN'),
+     'enabled = 0.5, must be a whole number of 0 to 1'),
     ({'position': [0.1, -1.0, math.nan, 1.0, *OTHERS]},
      'hip/stiffness = -1.0, must be finite and >= 0'),
     ({'position': [0.1, math.nan, math.inf, 1.0, *OTHERS]}, 'hip/damping = inf, must be finite'),
-    ({'position': [math.nan, 1.0, 1.0, 1.0, *OTHERS]}, 'hip: sent position = nan, must be finite'),
+    ({'position': [math.nan, 1.0, 1.0, 1.0, *OTHERS]},
+     'hip: recorded position = nan, must be finite'),
     ({'position': [0.1, *[math.nan] * 5, 3.0]}, 'hip/changed = 3, must name the values'),
     ({'position': [0.1, *[math.nan] * 5, 9.0]}, 'hip/mode = nan, must be a whole number'),
+    ({'position': [0.1, *[math.nan] * 3, 0.0, math.nan, 9.0]},
+     'hip/mode = 0.0, must be a whole number of 1 to 6'),
     ({'position': [*[math.nan] * 6, 0.0], 'velocity': [math.nan] * 7, 'effort': [math.nan] * 7},
      'hip: sent setpoint without a value'),
     ({'velocity': [0.0]}, 'with all values of each')])

@@ -3,7 +3,8 @@
 import math
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.core.signals import COMMAND, EVERY_KIND, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED)
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
@@ -145,14 +146,61 @@ def test_applied_setpoint_of_another_actuator_is_refused():
 
 
 @pytest.mark.parametrize(('entry', 'value', 'message'), [
-    (3, 0.5, 'hip/enabled = 0.5, must be a whole number <= 1'),
-    (3, 2.0, 'hip/enabled = 2.0, must be a whole number <= 1'),
-    (4, 7.0, 'hip/mode = 7.0, must be a whole number <= 6'),
-    (6, -1.0, 'hip/changed = -1.0, must be a whole number <= 255')])
+    (3, 0.5, 'hip/enabled = 0.5, must be a whole number of 0 to 1'),
+    (3, 2.0, 'hip/enabled = 2.0, must be a whole number of 0 to 1'),
+    (4, 7.0, 'hip/mode = 7.0, must be a whole number of 0 to 6'),
+    (6, -1.0, 'hip/changed = -1.0, must be a whole number of 0 to 255')])
 def test_numbers_of_an_applied_setpoint_are_whole_and_known(entry, value, message):
     found = decode(applied_setpoint('hip', command(), 0), JointState)
     found.position[entry] = value
     with pytest.raises(SetpointError, match=message):
+        applied_to_command(encode(found), 'hip')
+
+
+def cut(n):
+    """Return an applied setpoint with its first ``n`` entries."""
+    found = decode(applied_setpoint('hip', command(
+        position=0.5, velocity=1.0, effort=2.0, stiffness=300.0, damping=20.0, is_enabled=1), 0),
+        JointState)
+    for field in ('name', 'position', 'velocity', 'effort'):
+        setattr(found, field, list(getattr(found, field))[:n])
+    return encode(found)
+
+
+def test_what_was_applied_before_there_were_modes_is_a_setpoint_with_enable():
+    row = applied_to_command(cut(4), 'hip')
+    assert row.tobytes() == command(
+        kinds=HAS_SETPOINT | HAS_ENABLE, is_enabled=1, position=0.5, velocity=1.0, effort=2.0,
+        stiffness=300.0, damping=20.0).tobytes()
+    for n in (0, 1, 3, 5, 6):
+        with pytest.raises(SetpointError, match='hip: applied setpoint names '):
+            applied_to_command(cut(n), 'hip')
+
+
+@pytest.mark.parametrize('stayed', [0, 1])
+def test_a_refused_request_is_read_as_it_was_asked(stayed):
+    """Of enable or disable: what stayed is the opposite."""
+    data = applied_setpoint('hip', command(kinds=HAS_ENABLE | WAS_REFUSED, is_enabled=stayed), 0)
+    row = applied_to_command(data, 'hip')
+    assert (row['kinds'], row['is_enabled']) == (HAS_ENABLE, 1 - stayed)
+
+
+@pytest.mark.parametrize('field', ['position', 'velocity', 'effort'])
+@pytest.mark.parametrize('read', [applied_to_command, applied_kinds])
+def test_an_applied_setpoint_has_all_values_of_each_entry(read, field):
+    found = decode(applied_setpoint('hip', command(), 0), JointState)
+    setattr(found, field, list(getattr(found, field))[:6])
+    with pytest.raises(SetpointError, match='with all values of each'):
+        read(encode(found), 'hip')
+
+
+@pytest.mark.parametrize('entry', range(7))
+@pytest.mark.parametrize('value', [math.nan, math.inf])
+def test_an_applied_setpoint_lacks_no_value(entry, value):
+    """All of them are in force; one that was sent may lack some."""
+    found = decode(applied_setpoint('hip', command(), 0), JointState)
+    found.position[entry] = value
+    with pytest.raises(SetpointError, match='hip: applied .* must be finite'):
         applied_to_command(encode(found), 'hip')
 
 
