@@ -1,10 +1,12 @@
 """Progress of long work: one line of a terminal, overwritten until the work ends."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 import contextlib
 import threading
 import time
-from typing import Protocol, TextIO
+from typing import Protocol, TextIO, TypeVar
+
+_Piece = TypeVar('_Piece')
 
 _TO_THE_LEFT, _CLEAR_THE_REST = '\r', '\033[K'
 PERIOD_S = 1.0      # between two times that a line shows
@@ -83,6 +85,14 @@ class Progress(Protocol):
 
     def __call__(self, done: int, total: int, what: str = '') -> None:
         """Show the progress."""
+
+
+def told(pieces: Collection[_Piece], progress: Progress | None) -> Iterator[_Piece]:
+    """Yield each piece, and show it as finished when the next one is asked for."""
+    for done, piece in enumerate(pieces, 1):
+        yield piece
+        if progress is not None:
+            progress(done, len(pieces))
 
 
 def counted(

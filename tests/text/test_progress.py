@@ -4,7 +4,7 @@ import errno
 import io
 import threading
 
-from isa_ros.text.progress import counted, repeated, terminal_line, underway
+from isa_ros.text.progress import counted, repeated, terminal_line, told, underway
 import pytest
 from tests.text.terminal import Terminal
 
@@ -47,6 +47,15 @@ def test_at_the_end_the_line_is_erased_unless_it_stays(stays, expected):
     first, last = shown([(3.0, 1, 2), (7.0, 2, 2)], of='lap', stays=stays)
     assert first == 'lap: 1 of 2 runs, 3 s, 3 s left\x1b[K'
     assert last == expected
+
+
+def test_a_piece_is_told_when_it_is_finished():
+    """Which its user is once they ask for the next one; without progress they are the same."""
+    steps = []
+    for piece in told('abc', lambda done, total, what='': steps.append((done, total))):
+        steps.append(piece)
+    assert steps == ['a', (1, 3), 'b', (2, 3), 'c', (3, 3)]
+    assert list(told('abc', None)) == ['a', 'b', 'c']
 
 
 def test_a_terminal_that_was_closed_ends_no_work():

@@ -9,6 +9,7 @@ from typing import Any
 from isa_ros.analysis.studies import (
     falling_load, hysteresis, lowering, page, power_unit, servo_valve, temperature)
 from isa_ros.analysis.studies.measure import Benches, results, Studied
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
 from isa_ros.text.json_file import write_wanted
@@ -44,27 +45,26 @@ def study(options: Namespace) -> None:
     write_wanted_page(page, done, options.out)
 
 
-_OWN: Mapping[str, Any] = {own.NAME: own for own in (
+_OWN: Mapping[str, OwnStudy[Any]] = {module.STUDY.name: module.STUDY for module in (
     temperature, servo_valve, hysteresis, falling_load, lowering, power_unit)}
-"""The studies with a rig and a page of their own: modules, by name."""
 
 
-def _own(options: Namespace, module: Any) -> None:
+def _own(options: Namespace, own: OwnStudy[Any]) -> None:
     """Run a study that has a rig and a page of its own."""
     for option in ('model', 'values', 'all'):
         if getattr(options, option):
-            raise ConfigError(f'--{option} is not used by the study {module.NAME}')
-    found = module.results(counted(sys.stderr, 'values', of=module.NAME))
-    print(module.as_text(found), flush=True)
-    write_wanted(module.as_tree(found), options.json)
-    write_wanted_page(module, found, options.out)
+            raise ConfigError(f'--{option} is not used by the study {own.name}')
+    found = own.results(counted(sys.stderr, 'values', of=own.name))
+    print(own.as_text(found), flush=True)
+    write_wanted(own.as_tree(found), options.json)
+    write_wanted_page(own, found, options.out)
 
 
 def listing() -> str:
     """Return every study, a line each."""
     return '\n'.join(aligned([
         *((one.name, one.title) for one in STUDIES),
-        *((own.NAME, own.TITLE) for own in _OWN.values())]))
+        *((own.name, own.title) for own in _OWN.values())]))
 
 
 def _chosen(options: Namespace) -> tuple[Study, ...]:

@@ -8,23 +8,22 @@ docs/falling_load.md.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 import warnings
 
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png_with_palette
-from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits, RIGHT
+from isa_ros.text.progress import Progress, told
+from isa_ros.text.table import digits, RIGHT
 from isa_ros.tick.trips import TripWarning
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
 NAME, TITLE = 'falling_load', 'A crane whose hose bursts, with and without load-holding valves'
-PAGE = 'falling_load.md'
 BURST_S, SECONDS = 1.0, 4.0
 
 HOSES: Mapping[str, Any] = {
@@ -103,7 +102,7 @@ class FallingLoad:
 def results(progress: Progress | None = None) -> list[FallingLoad]:
     """Simulate the crane in each case."""
     found = []
-    for k, (case, holding) in enumerate(CASES.items()):
+    for case, holding in told([*CASES.items()], progress):
         changes: dict[str, Any] = {
             'body.start.joints_deg.swing_pitch': 0.0, f'{_LIFT}.hoses': HOSES}
         if holding is not None:
@@ -115,8 +114,6 @@ def results(progress: Progress | None = None) -> list[FallingLoad]:
         found.append(FallingLoad(
             case, np.linspace(0.0, SECONDS, len(position)), position,
             np.asarray(result['lift.chamber_pressure_a'], float)))
-        if progress is not None:
-            progress(k + 1, len(CASES))
     return found
 
 
@@ -127,25 +124,16 @@ def _table(found: Sequence[FallingLoad]) -> list[tuple[str, ...]]:
                digits(own.fastest, 3), digits(own.peak / MPA, 3)) for own in found)]
 
 
-def as_text(found: Sequence[FallingLoad]) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
-
-
-def as_tree(found: Sequence[FallingLoad]) -> dict[str, Any]:
-    """Return the study for JSON, SI."""
-    return {'name': NAME, 'title': TITLE, 'outcomes': [
+def _numbers(found: Sequence[FallingLoad]) -> dict[str, Any]:
+    return {'outcomes': [
         {'case': own.case, 'first': own.first, 'fallen': own.fallen, 'fastest': own.fastest,
          'peak': own.peak} for own in found]}
 
 
-def write_page(found: Sequence[FallingLoad], directory: Path) -> list[Path]:
-    """Write falling_load.md with its figure into a directory; return their paths."""
-    page = Page(PAGE, _HEAD)
+def _fill(page: Page, found: Sequence[FallingLoad]) -> None:
     page.figure(NAME, TITLE, png_with_palette(_figure(found)))
     page.table(_table(found), RIGHT)
     page.paragraph(_TEXT)
-    return page.write(directory)
 
 
 def _figure(found: Sequence[FallingLoad]) -> Figure:
@@ -162,3 +150,6 @@ def _figure(found: Sequence[FallingLoad]) -> Figure:
     above.legend(fontsize='small')
     below.set_xlabel('time, s; dotted: the hose bursts', fontsize='small')
     return figure
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

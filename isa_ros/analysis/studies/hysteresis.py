@@ -7,21 +7,20 @@ The output is blocked, the loop is pushed to 10 % of its rating and back to 0, a
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 from isa_ros.analysis.studies.measure import changed, RIPPLE_S, up_and_back
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.reu.block import Pid
 from isa_ros.text.page import Page, png_with_palette
-from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits, RIGHT
+from isa_ros.text.progress import Progress, told
+from isa_ros.text.table import digits, RIGHT
 from matplotlib.figure import Figure
 
 NAME, TITLE = 'hysteresis', 'Hysteresis of the valve: limit cycle of a force loop at null'
-PAGE = 'hysteresis.md'
 MODEL, PRESET = 'isa_v5', 'default'
 DITHER_HZ = 250.0
 GAINS = (0.25, 0.5, 1.0, 2.0)       # of those of the preset
@@ -83,13 +82,8 @@ def results(
         gains: Sequence[float] = GAINS) -> list[Hunting]:
     """Measure each valve at each gain."""
     bench = rig(Choice(name=MODEL, loop='force', preset=PRESET, load=BLOCKED))
-    found: list[Hunting] = []
-    for valve in valves:
-        for gain in gains:
-            found.append(hunting(bench, valve, gain))
-            if progress is not None:
-                progress(len(found), len(valves) * len(gains))
-    return found
+    cases = [(valve, gain) for valve in valves for gain in gains]
+    return [hunting(bench, *case) for case in told(cases, progress)]
 
 
 def hunting(bench: Rig, valve: ValveCase, gain: float) -> Hunting:
@@ -106,24 +100,15 @@ def hunting(bench: Rig, valve: ValveCase, gain: float) -> Hunting:
                    ripple_frequency(last, RATE_HZ) if size > CODES * step else None)
 
 
-def as_text(found: Sequence[Hunting]) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
-
-
-def as_tree(found: Sequence[Hunting]) -> dict[str, Any]:
-    """Return the study for JSON, SI."""
-    return {'name': NAME, 'title': TITLE, 'model': MODEL, 'preset': PRESET,
+def _numbers(found: Sequence[Hunting]) -> dict[str, Any]:
+    return {'model': MODEL, 'preset': PRESET,
             'outcomes': [asdict(one) | {'valve': one.valve._asdict()} for one in found]}
 
 
-def write_page(found: Sequence[Hunting], directory: Path) -> list[Path]:
-    """Write hysteresis.md and its figure into a directory; return their paths."""
-    page = Page(PAGE, _HEAD)
+def _fill(page: Page, found: Sequence[Hunting]) -> None:
     page.table(_table(found), RIGHT)
     page.paragraph(_SEEN)
     page.figure(NAME, TITLE, png_with_palette(_drawn(found)))
-    return page.write(directory)
 
 
 def _rows(found: Sequence[Hunting]) -> dict[ValveCase, list[Hunting]]:
@@ -156,3 +141,6 @@ def _drawn(found: Sequence[Hunting]) -> Figure:
     ax.grid(visible=True, which='both', linewidth=0.3)
     ax.legend(fontsize='x-small')
     return figure
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

@@ -8,24 +8,23 @@ as text, as JSON, and as the page docs/lowering.md.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 import warnings
 
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.reu.block import Pid
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png_with_palette
-from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits, RIGHT
+from isa_ros.text.progress import Progress, told
+from isa_ros.text.table import digits, RIGHT
 from isa_ros.tick.trips import TripWarning
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
 NAME, TITLE = 'lowering', 'A boom let down behind a counterbalance valve'
-PAGE = 'lowering.md'
 RUN, SCENARIO, BOOM = 'crane_counterbalance', 'lower_boom', 'crane/lift'
 DOWN = (4.5, 9.5)       # s: while it is let down
 SLOWEST = 2.0           # Hz: above the load's pendulum, which swings anyway
@@ -184,12 +183,7 @@ def outcome(case: LoweringCase) -> Lowering:
 
 def results(progress: Progress | None = None) -> list[Lowering]:
     """Simulate all cases."""
-    found = []
-    for k, case in enumerate(CASES):
-        found.append(outcome(case))
-        if progress is not None:
-            progress(k + 1, len(CASES))
-    return found
+    return [outcome(case) for case in told(CASES, progress)]
 
 
 _COLUMNS: tuple[str, ...] = (
@@ -210,14 +204,8 @@ def _table(found: Sequence[Lowering]) -> list[tuple[str, ...]]:
     return rows
 
 
-def as_text(found: Sequence[Lowering]) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
-
-
-def as_tree(found: Sequence[Lowering]) -> dict[str, Any]:
-    """Return the study for JSON, SI."""
-    return {'name': NAME, 'title': TITLE, 'outcomes': [
+def _numbers(found: Sequence[Lowering]) -> dict[str, Any]:
+    return {'outcomes': [
         {'loop': own.case.loop, 'pilot_ratio': own.case.ratio,
          'opening': own.case.opening_mpa * MPA, 'lag': own.case.lag_ms * MILLI,
          'gain': own.case.gain, 'error': own.error, 'fastest': own.fastest,
@@ -225,16 +213,13 @@ def as_tree(found: Sequence[Lowering]) -> dict[str, Any]:
          'largest_pilot': own.largest_pilot, 'trips': list(own.trips)} for own in found]}
 
 
-def write_page(found: Sequence[Lowering], directory: Path) -> list[Path]:
-    """Write lowering.md with its figure into a directory; return their paths."""
+def _fill(page: Page, found: Sequence[Lowering]) -> None:
     by_case: Mapping[LoweringCase, Lowering] = {own.case: own for own in found}
-    page = Page(PAGE, _HEAD)
     page.figure(NAME, TITLE, png_with_palette(_figure([by_case[case] for case in SHOWN])))
     page.table(_table(found), RIGHT)
     page.paragraph(_TEXT.format(
         pilot_least=by_case[LoweringCase(BY_POSITION, 1.0)].largest_pilot / MPA,
         pilot_most=by_case[LoweringCase(BY_POSITION, 10.0)].largest_pilot / MPA))
-    return page.write(directory)
 
 
 def _figure(found: Sequence[Lowering]) -> Figure:
@@ -253,3 +238,6 @@ def _figure(found: Sequence[Lowering]) -> Figure:
     axes[1].set_ylim(-10.0, 6.0)
     axes[2].set_xlabel('time, s', fontsize='small')
     return figure
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

@@ -8,26 +8,25 @@ peaks those of one tick.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from textwrap import fill
 from typing import Any, NamedTuple
 import warnings
 
 from isa_ros.analysis.studies import warm_up
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.core.accounts import HELD, LEAKAGE, PUMP, SUPPLY_SHARES, THROTTLING
 from isa_ros.core.units import LPM, MPA
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png
-from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, RIGHT
+from isa_ros.text.progress import Progress, told
+from isa_ros.text.table import RIGHT
 from isa_ros.tick.trips import TripWarning
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 
 NAME, TITLE = 'power_unit', 'Power unit of the quadruped: pump and accumulator against the sag'
-PAGE = 'power_unit.md'
 RUN, UNIT, ROBOT = 'quadruped_power_unit', 'unit', 'quadruped'     # run and scenario, their names
 MANIFOLDS = ('front', 'hind')
 DURATION = 8.0      # s
@@ -109,12 +108,7 @@ def results(
         progress: Progress | None = None, units: Sequence[PowerUnit] = UNITS,
         duration: float = DURATION) -> list[SuppliedTrot]:
     """Let it trot on each unit."""
-    found: list[SuppliedTrot] = []
-    for unit in units:
-        found.append(supplied(unit, trot(unit, duration)))
-        if progress is not None:
-            progress(len(found), len(units))
-    return found
+    return [supplied(unit, trot(unit, duration)) for unit in told(units, progress)]
 
 
 def trot(unit: PowerUnit, duration: float) -> Result:
@@ -163,24 +157,17 @@ def gap_of(account: Mapping[str, float]) -> float:
     return abs(lacks) / given
 
 
-def as_text(found: Sequence[SuppliedTrot]) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
-
-
-def as_tree(found: Sequence[SuppliedTrot]) -> dict[str, Any]:
-    """Return the study for JSON, SI, without its traces; null where there is no number."""
+def _numbers(found: Sequence[SuppliedTrot]) -> dict[str, Any]:
+    """Return them without traces; None where there is no number."""
     outcomes = []
     for one in found:
         numbers = {key: value for key, value in asdict(one).items() if np.ndim(value) == 0}
         outcomes.append({key: None if np.isnan(value) else value
                          for key, value in numbers.items()} | {'unit': one.unit._asdict()})
-    return {'name': NAME, 'title': TITLE, 'outcomes': outcomes}
+    return {'outcomes': outcomes}
 
 
-def write_page(found: Sequence[SuppliedTrot], directory: Path) -> list[Path]:
-    """Write power_unit.md and its figure into a directory; return their paths."""
-    page = Page(PAGE, _HEAD)
+def _fill(page: Page, found: Sequence[SuppliedTrot]) -> None:
     page.table(_table(found, '**'), RIGHT)
     page.paragraph(_CLOSES.format(max(one.gap for one in found)))
     page.figure(NAME, 'Pressure of the rail, and the flows of the chosen unit',
@@ -193,7 +180,6 @@ def write_page(found: Sequence[SuppliedTrot], directory: Path) -> list[Path]:
         page.paragraph(before)
         page.table(warm_up.table(chosen.heat), RIGHT)
         page.paragraph(follows)
-    return page.write(directory)
 
 
 def _seen(by_unit: Mapping[PowerUnit, SuppliedTrot]) -> str:
@@ -258,3 +244,6 @@ def _drawn(found: Sequence[SuppliedTrot]) -> Figure:
         ax.grid(visible=True, linewidth=0.3)
         ax.legend(fontsize='x-small', loc='lower left', ncols=2)
     return figure
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

@@ -7,27 +7,25 @@ valve without hysteresis. Frequencies are those of the spool behind the measured
 stepped sine of `isa bode`.
 """
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.sweep import excitation, FrequencySweep
 from isa_ros.analysis.signals.signals import Signals, signals_of
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.core.units import LPM, MILLI, MPA, PERCENT
 from isa_ros.plant.spool import ResponseSpool
 from isa_ros.plant.valve_sheets import DataSheetValve
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits, LEFT
+from isa_ros.text.table import digits, LEFT
 from matplotlib.figure import Figure
 import numpy as np
 
 NAME, TITLE = 'servo_valve', 'A servo valve, measured back from its data sheet'
-PAGE = 'servo_valve.md'
 RIG, SCENARIO = 'rig_servo_valve', 'servo_valve'
 FREE, SHUT = 'free', 'shut'
 _PERIOD = 50.0                      # s, of the cycle; the loop is closed after a quarter of it
@@ -230,29 +228,21 @@ def _loop(signals: Signals, name: str) -> tuple[np.ndarray, np.ndarray]:
     return _values(signals, f'{name}.current')[part] / MILLI, y[part]
 
 
-def as_text(found: SheetAndBench) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found.numbers), LEFT)])
+def _numbers(found: SheetAndBench) -> dict[str, Any]:
+    """Return them in the units of the table."""
+    return {'numbers': [asdict(one) for one in found.numbers]}
 
 
-def as_tree(found: SheetAndBench) -> dict[str, Any]:
-    """Return the study for JSON, in the units of the table."""
-    return {'name': NAME, 'title': TITLE, 'numbers': [asdict(one) for one in found.numbers]}
-
-
-def write_page(found: SheetAndBench, directory: Path) -> list[Path]:
-    """Write servo_valve.md and its figure into a directory; return their paths."""
-    page = Page(PAGE, _HEAD)
-    page.table(_table(found.numbers))
+def _fill(page: Page, found: SheetAndBench) -> None:
+    page.table(_table(found))
     page.paragraph(_SHAPES)
-    page.figure('servo_valve', 'Loops of a servo valve', png_with_palette(_drawn(found)))
-    return page.write(directory)
+    page.figure(NAME, 'Loops of a servo valve', png_with_palette(_drawn(found)))
 
 
-def _table(numbers: Sequence[SheetNumber]) -> list[tuple[str, ...]]:
+def _table(found: SheetAndBench) -> list[tuple[str, ...]]:
     return [('of the data sheet', 'unit', 'stated', 'measured'), *(
         (one.what, one.unit, '-' if one.stated is None else f'{one.stated:g}',
-         digits(one.measured, 3)) for one in numbers)]
+         digits(one.measured, 3)) for one in found.numbers)]
 
 
 def _drawn(found: SheetAndBench) -> Figure:
@@ -266,3 +256,6 @@ def _drawn(found: SheetAndBench) -> Figure:
     for ax in (left, right):
         ax.grid(visible=True, linewidth=0.4)
     return figure
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill, LEFT)

@@ -14,11 +14,11 @@ The study is shown as text, as JSON, and as the page docs/temperature.md.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 import math
-from pathlib import Path
 from typing import Any
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
+from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import build
@@ -29,12 +29,11 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.plant.thermal import heat, THERMAL_STATE
 from isa_ros.scripting.run import load, Run
 from isa_ros.text.page import Page
-from isa_ros.text.progress import Progress
-from isa_ros.text.table import aligned, digits, RIGHT
+from isa_ros.text.progress import Progress, told
+from isa_ros.text.table import digits, RIGHT
 import numpy as np
 
 NAME, TITLE = 'temperature', 'Temperature of the oil, from 30 to 60 celsius'
-PAGE = 'temperature.md'
 RIG, SCENARIO = 'rig_temperature', 'temperature'
 LEAK, RUB, SWING = 'leak', 'rub', 'swing'   # its actuators
 TEMPERATURES = (30.0, 40.0, 50.0, 60.0)     # celsius
@@ -127,11 +126,9 @@ def rig_at(celsius: float) -> Run:
 def results(progress: Progress | None = None) -> list[TemperatureEffects]:
     """Simulate the rig at each temperature, and measure."""
     found = []
-    for k, celsius in enumerate(TEMPERATURES):
+    for celsius in told(TEMPERATURES, progress):
         signals = signals_of(rig_at(celsius).simulate())
         found.append(TemperatureEffects(celsius, measured(signals), law(signals, celsius)))
-        if progress is not None:
-            progress(k + 1, len(TEMPERATURES))
     return found
 
 
@@ -204,26 +201,17 @@ def _plant(run: RunConfig, actuator: str) -> np.record:
     return plant
 
 
-def as_text(found: Sequence[TemperatureEffects]) -> str:
-    """Return the text for a terminal."""
-    return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
+def _numbers(found: Sequence[TemperatureEffects]) -> dict[str, Any]:
+    return {'outcomes': [asdict(result) for result in found]}
 
 
-def as_tree(found: Sequence[TemperatureEffects]) -> dict[str, Any]:
-    """Return the study for JSON, SI."""
-    return {'name': NAME, 'title': TITLE, 'outcomes': [asdict(result) for result in found]}
-
-
-def write_page(found: Sequence[TemperatureEffects], directory: Path) -> list[Path]:
-    """Write temperature.md into a directory; return its path."""
-    page = Page(PAGE, _HEAD)
+def _fill(page: Page, found: Sequence[TemperatureEffects]) -> None:
     page.section('From 30 to 60 celsius')
     page.paragraph(_EFFECTS)
     page.table(_table(found), RIGHT)
     page.section('Standing')
     page.paragraph(_STANDING)
     page.table(list(_standing()), RIGHT)
-    return page.write(directory)
 
 
 def _table(found: Sequence[TemperatureEffects]) -> list[tuple[str, ...]]:
@@ -265,3 +253,6 @@ def _warmed_up(plant: np.record) -> Iterator[float]:
         heat(1.0, flow * _SUPPLY, 0.0, flow, own.supply, own, state)
         if second in _MOMENTS:
             yield float(state.oil)
+
+
+STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

@@ -12,6 +12,6 @@ def test_a_counterbalance_valve_holds_what_a_burst_hose_drops(tmp_path):
     assert 0.01 < found['pilot check'].fallen < 0.06
     assert 0.0 < found['counterbalance'].fallen < 0.005
     assert found['counterbalance'].fastest < found['pilot check'].fastest < 0.1
-    paths = falling_load.write_page(list(found.values()), tmp_path)
+    paths = falling_load.STUDY.write_page(list(found.values()), tmp_path)
     assert [path.name for path in paths] == ['falling_load.md', 'falling_load.png']
-    assert 'counterbalance' in falling_load.as_text(list(found.values()))
+    assert 'counterbalance' in falling_load.STUDY.as_text(list(found.values()))

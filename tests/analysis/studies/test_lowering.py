@@ -48,8 +48,8 @@ def test_a_small_ratio_lets_the_boom_down_and_a_soft_impedance_trips(tmp_path):
     calm = lowering.outcome(lowering.LoweringCase(lowering.BY_FORCE, 3.0, gain=0.5))
     assert calm.swing[0] < 0.01e6
     found = [*ones.values(), calm, *map(lowering.outcome, lowering.CASES[:1])]
-    paths = lowering.write_page(found, tmp_path)
+    paths = lowering.STUDY.write_page(found, tmp_path)
     assert [path.name for path in paths] == ['lowering.md', 'lowering.png']
-    assert 'force_error' in lowering.as_text(found)
-    assert [own['pilot_ratio'] for own in lowering.as_tree(found)['outcomes']] == [
+    assert 'force_error' in lowering.STUDY.as_text(found)
+    assert [own['pilot_ratio'] for own in lowering.STUDY.as_tree(found)['outcomes']] == [
         1.5, 10.0, 3.0, 1.5, 3.0, 1.0]

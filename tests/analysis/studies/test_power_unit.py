@@ -73,15 +73,15 @@ def test_a_unit_has_the_values_of_its_row_and_the_file_those_of_the_chosen(
 
 def test_whether_and_when_it_fell_is_in_its_row(
         found: SuppliedTrot, result: Result, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert power_unit.as_text([found]).endswith('yes')
-    assert power_unit.as_tree([found])['outcomes'][0]['fell'] is None
+    assert power_unit.STUDY.as_text([found]).endswith('yes')
+    assert power_unit.STUDY.as_tree([found])['outcomes'][0]['fell'] is None
     monkeypatch.setattr(power_unit, 'FALLEN', 1.0)      # above where it stands
     fallen = power_unit.supplied(SMALL, result)
-    assert fallen.fell == 0.0 and power_unit.as_text([fallen]).endswith('falls at 0.0 s')
+    assert fallen.fell == 0.0 and power_unit.STUDY.as_text([fallen]).endswith('falls at 0.0 s')
 
 
 def test_a_part_of_the_study_draws_no_conclusions(found: SuppliedTrot, tmp_path: Path) -> None:
-    page, figure = power_unit.write_page([found], tmp_path)
+    page, figure = power_unit.STUDY.write_page([found], tmp_path)
     assert figure.exists() and 'The pump must' not in page.read_text()
     assert 'gas at 12 MPa' in page.read_text()
     assert load(power_unit.RUN).configuration.supplies[0].sheet.by_name[
@@ -93,6 +93,6 @@ def test_a_row_of_the_page_is_that_of_the_run(tmp_path: Path) -> None:
     """The chosen unit through trot and push."""
     one, = power_unit.results(units=(CHOSEN,))
     assert one.gap < 1e-6 and np.isnan(one.fell)
-    page, _ = power_unit.write_page([one], tmp_path)
+    page, _ = power_unit.STUDY.write_page([one], tmp_path)
     row, = (line for line in page.read_text().splitlines() if line.startswith('| **'))
     assert row in (DOCS / page.name).read_text().splitlines()

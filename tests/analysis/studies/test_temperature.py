@@ -1,10 +1,11 @@
 """The oil's temperature, measured from bags and compared with its laws."""
 
+from dataclasses import replace
 import json
 from pathlib import Path
 
 from isa_ros.analysis.signals.signals import read_signals, Signals
-from isa_ros.analysis.studies import temperature
+from isa_ros.analysis.studies import command, temperature
 from isa_ros.analysis.studies.temperature import (
     Effects, law, measured, results, rig_at, TemperatureEffects, TEMPERATURES)
 from isa_ros.cli import main as cli
@@ -73,18 +74,18 @@ def test_memory_and_bag_show_the_same(
 
 def test_the_page_is_that_of_the_study(
         found: list[TemperatureEffects], tmp_path: Path) -> None:
-    page, = temperature.write_page(found, tmp_path)
+    page, = temperature.STUDY.write_page(found, tmp_path)
     assert page.read_text() == (DOCS / page.name).read_text()
 
 
 def test_the_command_prints_the_table_and_writes_json(
         found: list[TemperatureEffects], monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(
-        'isa_ros.analysis.studies.temperature.results', lambda progress: found)
+    monkeypatch.setitem(
+        command._OWN, 'temperature', replace(temperature.STUDY, results=lambda progress: found))
     file = tmp_path / 'study.json'
     assert cli.main(['study', 'temperature', '--json', str(file)]) == 0
-    assert temperature.as_text(found) in capsys.readouterr().out
+    assert temperature.STUDY.as_text(found) in capsys.readouterr().out
     tree = json.loads(file.read_text())
     assert [Effects(**outcome['measured']) for outcome in tree['outcomes']] == [
         result.measured for result in found]

@@ -43,9 +43,9 @@ def test_hysteresis_moves_the_blocked_pressure_from_stop_to_stop(found: SheetAnd
 
 @pytest.mark.slow
 def test_the_page_in_the_documentation_is_this_one(found: SheetAndBench, tmp_path: Path) -> None:
-    page, figure = servo_valve.write_page(found, tmp_path)
+    page, figure = servo_valve.STUDY.write_page(found, tmp_path)
     assert page.read_text() == (DOCS / page.name).read_text()
-    assert figure.exists() and servo_valve.as_tree(found)['numbers'][0]['stated'] == 38.0
+    assert figure.exists() and servo_valve.STUDY.as_tree(found)['numbers'][0]['stated'] == 38.0
 
 
 @pytest.mark.slow
@@ -59,7 +59,7 @@ def test_less_gain_hunts_more_and_slower_and_dither_ends_it(tmp_path: Path) -> N
     assert play[0].ripple > 1.5 * play[1].ripple > 60.0
     assert play[0].frequency is not None and play[1].frequency is not None
     assert play[0].frequency < play[1].frequency < 30.0
-    page, _ = hysteresis.write_page(rows, tmp_path)
+    page, _ = hysteresis.STUDY.write_page(rows, tmp_path)
     shown = [line for line in page.read_text().splitlines() if line.startswith('| 3 / 3 %')]
     whole = (DOCS / page.name).read_text()
     assert len(shown) == 2
