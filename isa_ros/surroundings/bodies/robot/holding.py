@@ -8,6 +8,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.motion import move, tree_of
 from isa_ros.surroundings.bodies.robot.port_kernel import DEAD_CENTRE, fill_response
 from isa_ros.surroundings.bodies.robot.reach import along
+from isa_ros.surroundings.bodies.robot.records import RobotRecords
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,23 +17,23 @@ REGULAR = 1e-6          # added to the diagonal of A, scaled to 1, so that drive
 
 
 @kernel
-def pushes(y, links, speeds, drives, levers, contacts, scratch, by, free):
+def pushes(y, records, by, free):
     """
     Fill A = J M^-1 J^T and x'' without forces of the actuators, everything held that may be.
 
     A (k, k) is how all actuators accelerate by a unit force of each  (L13).
     """
-    k = len(drives)
-    tree = tree_of(links, speeds, drives, levers, contacts, scratch, len(y))
+    k = len(records.drives)
+    tree = tree_of(records, len(y))
     for j in range(k):
         tree.forces[j] = 0.0
     move(y, tree.forces, True, tree)
     for j in range(k):
-        free[j] = along(drives[j], levers, tree.acceleration) + drives[j].curvature
+        free[j] = along(tree.drives[j], tree.levers, tree.acceleration) + tree.drives[j].curvature
     for j in range(k):
-        inverse_mass = fill_response(drives[j], True, tree)
+        inverse_mass = fill_response(tree.drives[j], True, tree)
         for i in range(k):
-            by[i, j] = inverse_mass * along(drives[i], levers, tree.response)
+            by[i, j] = inverse_mass * along(tree.drives[i], tree.levers, tree.response)
 
 
 @kernel
@@ -84,12 +85,12 @@ def hold(a, free, forces):
             forces[i] += left[i] * scale[i]
 
 
-def holding_forces(y: NDArray[np.float64], arrays: Sequence[np.ndarray],
+def holding_forces(y: NDArray[np.float64], records: RobotRecords,
                    names: Sequence[str]) -> NDArray[np.float64]:
     """
     Return the forces (k,) under which the actuators do not accelerate, N | Nm.
 
-    ``arrays`` are the records and the scratch of the robot; ``names`` are those of its actuators.
+    ``names`` are those of the robot's actuators.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def holding_forces(y: NDArray[np.float64], arrays: Sequence[np.ndarray],
     """
     k = len(names)
     by, free, forces = np.zeros((k, k)), np.zeros(k), np.zeros(k)
-    pushes(y, *arrays, by, free)
+    pushes(y, records, by, free)
     for name, own in zip(names, by.diagonal()):
         if not own > DEAD_CENTRE:
             raise ConfigError(

@@ -60,14 +60,15 @@ def scratch_size(n_speeds: int, n_drives: int, n_state: int) -> int:
 
 
 @kernel
-def tree_of(links, speeds, drives, levers, contacts, scratch, n_state):
-    """Return the `TreeRecords` of the records, its arrays in ``scratch``."""
-    d, k = len(speeds), len(drives)
+def tree_of(records, n_state):
+    """Return the `TreeRecords` of `RobotRecords`, with arrays in the scratch."""
+    scratch, d, k = records.scratch, len(records.speeds), len(records.drives)
     at = d * d
     forces = at + 3 * d
     state = forces + 3 * k
     return TreeRecords(
-        links=links, speeds=speeds, drives=drives, levers=levers, contacts=contacts,
+        links=records.links, speeds=records.speeds, drives=records.drives,
+        levers=records.levers, contacts=records.contacts,
         mass=scratch[:at].reshape(d, d), bias=scratch[at:at + d],
         acceleration=scratch[at + d:at + 2 * d], response=scratch[at + 2 * d:forces],
         forces=scratch[forces:forces + k],

@@ -99,23 +99,22 @@ def bounded(value, bound):
 
 
 @kernel
-def robot_instant(state, forces, links, speeds, drives, levers, contacts, scratch):
+def robot_instant(state, forces, records):
     """Fill the scratch with the motion of a state under sensor forces (k,)."""
-    y = motion_part(state, len(drives))
-    move(y, forces, state[len(state) - 1] != 0.0,
-         tree_of(links, speeds, drives, levers, contacts, scratch, len(y)))
+    y = motion_part(state, len(records.drives))
+    move(y, forces, state[len(state) - 1] != 0.0, tree_of(records, len(y)))
 
 
 @kernel
-def robot_ports(state, tick, rows, links, speeds, drives, levers, contacts, scratch, ports):
+def robot_ports(state, tick, rows, records, ports):
     """
     Fill the `LOAD_PORT` of all actuators for ``tick`` seconds  (L1, L13-L15).
 
     k and d are the response of the ground. Pressures are left as they are.
     """
-    n = len(drives)
+    drives, levers, n = records.drives, records.levers, len(records.drives)
     y, kept, is_held = motion_part(state, n), kept_part(state, n), state[len(state) - 1] != 0.0
-    tree = tree_of(links, speeds, drives, levers, contacts, scratch, len(y))
+    tree = tree_of(records, len(y))
     move(y, kept.force, is_held, tree)
     for j in range(n):
         port, drive = ports[rows[j]], drives[j]
@@ -146,16 +145,16 @@ def predict(y, tick, kept, is_held, tree):
 
 
 @kernel
-def robot_tick(state, step_ns, rows, links, speeds, drives, levers, contacts, scratch, replies):
+def robot_tick(state, step_ns, rows, records, replies):
     """
     Advance by one tick under the mean forces of its windows; return `first_broken`.
 
     Each window is divided into equal Runge-Kutta steps of at most `SUBSTEP_NS`. The scratch has
     the motion at its end under the last sensor forces. A state that broke keeps its old forces.
     """
-    n = len(drives)
+    n = len(records.drives)
     y, is_held = motion_part(state, n), state[len(state) - 1] != 0.0
-    tree = tree_of(links, speeds, drives, levers, contacts, scratch, len(y))
+    tree = tree_of(records, len(y))
     window_ns = step_ns // FORCE_WINDOWS
     substeps = (window_ns + SUBSTEP_NS - 1) // SUBSTEP_NS
     h = window_ns / NS_PER_SECOND / substeps
@@ -170,5 +169,5 @@ def robot_tick(state, step_ns, rows, links, speeds, drives, levers, contacts, sc
             tree.forces[j] = replies[rows[j]].force
         move(y, tree.forces, is_held, tree)
         keep_rigid_forces(
-            kept_part(state, n), step_ns / NS_PER_SECOND, rows, drives, replies)
+            kept_part(state, n), step_ns / NS_PER_SECOND, rows, tree.drives, replies)
     return broken

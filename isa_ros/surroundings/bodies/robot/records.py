@@ -7,6 +7,7 @@ floats of their own (`isa_ros.surroundings.bodies.robot.state`).
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from isa_ros.core.record import rows_of
 from isa_ros.surroundings.bodies.robot.sheet import (
@@ -79,6 +80,18 @@ UNIT = np.dtype([
     ('sigma', '<f8', (6,)), ('bias', '<f8', (6,)),      # m/s2, rad/s
     ('key', '<u8'),                                     # of its noise
 ])
+
+
+class RobotRecords(NamedTuple):
+    """The records of a robot, and its scratch."""
+
+    links: np.ndarray
+    speeds: np.ndarray
+    drives: np.ndarray
+    levers: np.ndarray
+    contacts: np.ndarray
+    scratch: np.ndarray
+    """Floats."""
 
 
 def _nine(rotation: Matrix) -> list[float]:

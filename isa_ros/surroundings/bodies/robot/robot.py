@@ -22,7 +22,7 @@ from isa_ros.surroundings.bodies.robot.holding import holding_forces
 from isa_ros.surroundings.bodies.robot.kept_forces import FIELDS, kept_part
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
 from isa_ros.surroundings.bodies.robot.records import (
-    contact_records, drive_records, link_records, speed_records, unit_records)
+    contact_records, drive_records, link_records, RobotRecords, speed_records, unit_records)
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, MovingPart, Push, RobotSheet, RobotStart, RobotUnit)
@@ -69,7 +69,7 @@ class Robot(KernelBody):
         records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
                    contact_records(sheet))
         n = len(self._names)
-        self._arrays = stepping.RobotRecords(
+        self._arrays = RobotRecords(
             *records, np.zeros(scratch_size(len(records[1]), k, n)))
         self._arrays.drives['moving_mass'] = [part.mass for part in moving]
         self._state = np.zeros(n + FIELDS * k + 1)

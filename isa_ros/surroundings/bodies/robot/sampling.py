@@ -35,8 +35,9 @@ def stored_in(own, height, shear_x, shear_y):
 
 
 @kernel
-def fill_sample(y, f, links, speeds, drives, levers, contacts, out):
+def fill_sample(y, f, records, out):
     """Fill the floats of a sample, in the order of its fields; ``f`` are the sensor forces."""
+    links, speeds, drives, levers, contacts, _ = records
     v, n, d = coordinates(links, speeds), len(links) - 1, len(speeds)
     is_free = root_speeds(links, speeds) > 0
     at = 0
@@ -87,17 +88,17 @@ def fill_sample(y, f, links, speeds, drives, levers, contacts, out):
 
 
 @kernel
-def read_unit(step, y, links, speeds, drives, levers, contacts, scratch, unit, reading):
+def read_unit(step, y, records, unit, reading):
     """
     Fill the six numbers of a reading at plant step ``step``, in the unit's axes  (L31).
 
     Specific force f = a - g and angular velocity, a with the accelerations of `move`.
     """
-    tree = tree_of(links, speeds, drives, levers, contacts, scratch, len(y))
-    link = links[unit.link]
+    tree = tree_of(records, len(y))
+    link, speeds = tree.links[unit.link], tree.speeds
     place = place_of(link, unit.place)
     linear, angular = three(link.acceleration), three(link.turning_rate)
-    d = root_speeds(links, speeds) + unit.link - 1
+    d = root_speeds(tree.links, speeds) + unit.link - 1
     while d >= 0:
         linear = plus(linear, scaled(tree.acceleration[d], three(speeds[d].linear)))
         angular = plus(angular, scaled(tree.acceleration[d], three(speeds[d].angular)))

@@ -8,21 +8,10 @@ from isa_ros.surroundings.bodies.robot.kept_forces import kept_part
 from isa_ros.surroundings.bodies.robot.motion import tree_of
 from isa_ros.surroundings.bodies.robot.port_kernel import (
     motion_part, robot_instant, robot_ports, robot_tick)
+from isa_ros.surroundings.bodies.robot.records import RobotRecords
 from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.clock import is_released
 import numpy as np
-
-
-class RobotRecords(NamedTuple):
-    """The records of a robot, and its scratch."""
-
-    links: np.ndarray
-    speeds: np.ndarray
-    drives: np.ndarray
-    levers: np.ndarray
-    contacts: np.ndarray
-    scratch: np.ndarray
-    """Floats."""
 
 
 class RobotPorts(NamedTuple):
@@ -68,30 +57,26 @@ def fill_ports(own):
     """Release the robot if it is time, and fill its ports for the next tick; return 0."""
     if is_released(own.clock[0]):
         own.state[-1] = 0.0
-    links, speeds, drives, levers, contacts, scratch = own.records
-    robot_ports(own.state, own.clock[0].step, own.rows, links, speeds, drives, levers, contacts,
-                scratch, own.ports)
+    robot_ports(own.state, own.clock[0].step, own.rows, own.records, own.ports)
     return 0
 
 
 @kernel
 def take(y, forces, own):
     """Fill the sample, and read the units that are due, under the sensor forces of now."""
-    links, speeds, drives, levers, contacts, scratch = own.records
-    fill_sample(y, forces, links, speeds, drives, levers, contacts, own.values)
+    fill_sample(y, forces, own.records, own.values)
     clock = own.clock[0]
     for k in range(len(own.units)):
         if clock.t_ns % own.periods[k] == 0:
-            read_unit(clock.t_ns // PLANT_STEP_NS, y, links, speeds, drives, levers, contacts,
-                      scratch, own.units[k], own.readings[k])
+            read_unit(
+                clock.t_ns // PLANT_STEP_NS, y, own.records, own.units[k], own.readings[k])
 
 
 @kernel
 def show(own):
     """Fill scratch and sample under the forces that the ports assume now; return 0."""
-    links, speeds, drives, levers, contacts, scratch = own.records
     forces = kept_part(own.state, len(own.rows)).force
-    robot_instant(own.state, forces, links, speeds, drives, levers, contacts, scratch)
+    robot_instant(own.state, forces, own.records)
     take(motion_part(own.state, len(own.rows)), forces, own)
     return 0
 
@@ -104,15 +89,13 @@ def advance(own):
     Return 1 + the place of the first state that is not finite, -1 - the place in ``ends`` of a
     contact that ends the run, or 0.
     """
-    links, speeds, drives, levers, contacts, scratch = own.records
     clock, k = own.clock[0], len(own.rows)
-    broken = robot_tick(own.state, clock.step_ns, own.rows, links, speeds, drives, levers,
-                        contacts, scratch, own.replies)
+    broken = robot_tick(own.state, clock.step_ns, own.rows, own.records, own.replies)
     clock.t_ns += clock.step_ns
     if broken >= 0:
         return 1 + broken
     y = motion_part(own.state, k)
-    take(y, tree_of(links, speeds, drives, levers, contacts, scratch, len(y)).forces, own)
+    take(y, tree_of(own.records, len(y)).forces, own)
     for n in range(len(own.ends)):
         if own.values[own.ends[n]] != 0.0:
             return -1 - n

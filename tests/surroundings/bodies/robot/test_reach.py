@@ -9,7 +9,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot import motion
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
 from isa_ros.surroundings.bodies.robot.records import (
-    contact_records, drive_records, link_records, speed_records)
+    contact_records, drive_records, link_records, RobotRecords, speed_records)
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sheet import (
     Points, RobotContact, RobotDrive, RobotJoint, RobotLink, RobotSheet, RobotStart)
@@ -23,17 +23,18 @@ STEP = 1e-5     # of the differences
 
 
 @kernel
-def seen(y, links, speeds, drives, levers, contacts, scratch):
+def seen(y, records):
     """Fill the scratch at a state."""
-    motion.look(y, motion.tree_of(links, speeds, drives, levers, contacts, scratch, len(y)))
+    motion.look(y, motion.tree_of(records, len(y)))
 
 
 def looked(sheet: RobotSheet, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the `DRIVE` and `LEVER` rows at a state."""
     speeds = speed_records(sheet, RobotStart(joints=()))
     drives, levers = drive_records(sheet)
-    seen(y, link_records(sheet), speeds, drives, levers, contact_records(sheet),
-         np.zeros(scratch_size(len(speeds), len(drives), len(y))))
+    seen(y, RobotRecords(
+        link_records(sheet), speeds, drives, levers, contact_records(sheet),
+        np.zeros(scratch_size(len(speeds), len(drives), len(y)))))
     return drives, levers
 
 

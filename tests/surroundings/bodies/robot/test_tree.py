@@ -6,7 +6,7 @@ from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.bodies.robot import motion
 from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
 from isa_ros.surroundings.bodies.robot.records import (
-    contact_records, drive_records, link_records, speed_records)
+    contact_records, drive_records, link_records, RobotRecords, speed_records)
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet, RobotStart
 from isa_ros.surroundings.bodies.robot.tree import solve
@@ -19,13 +19,13 @@ EXACT = 1e-12   # of the largest acceleration: about a hundred roundings of sums
 
 
 @kernel
-def accelerations(y, force, is_held, links, speeds, drives, levers, contacts, scratch, out):
+def accelerations(y, force, is_held, records, out):
     """Fill q'' of a state under generalised forces, and solve M x = force."""
-    tree = motion.tree_of(links, speeds, drives, levers, contacts, scratch, len(y))
+    tree = motion.tree_of(records, len(y))
     motion.move(y, tree.forces, is_held, tree)
     out[1] = force
-    motion.let_go(speeds, is_held, out[1])
-    solve(speeds, tree.mass, out[1])
+    motion.let_go(tree.speeds, is_held, out[1])
+    solve(tree.speeds, tree.mass, out[1])
     out[0] = tree.acceleration + out[1]
 
 
@@ -34,9 +34,9 @@ def evaluated(sheet: RobotSheet, start: RobotStart, y: np.ndarray, force: np.nda
     """Return (q'', M^-1 force), (2, d)."""
     speeds, drives = speed_records(sheet, start), drive_records(sheet)
     out = np.zeros((2, len(speeds)))
-    accelerations(y, force, is_held, link_records(sheet), speeds, *drives,
-                  contact_records(sheet),
-                  np.zeros(scratch_size(len(speeds), len(drives[0]), len(y))), out)
+    accelerations(y, force, is_held, RobotRecords(
+        link_records(sheet), speeds, *drives, contact_records(sheet),
+        np.zeros(scratch_size(len(speeds), len(drives[0]), len(y)))), out)
     return out
 
 
