@@ -9,6 +9,7 @@ states need four.
 """
 
 import math
+from typing import Any, NamedTuple
 
 from isa_ros.actuator.feed import conductance, FEED_STATE, pressure_rate, VARIED
 from isa_ros.core.kernel import kernel, part_of_kernel
@@ -37,6 +38,31 @@ ENERGIES_AT = STATE_SIZE - ENERGIES.itemsize // 8
 COPIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
+
+
+class Integrated(NamedTuple):
+    """What the integration of one actuator reads and writes."""
+
+    port: Any
+    """`LOAD_PORT`."""
+    feed: Any
+    """`SUPPLY_PORT`."""
+    actuator: Any
+    """`ACTUATOR`."""
+    continuous: Any
+    """`CONTINUOUS`: the state and a stage, (COPIES,)."""
+    rates: Any
+    """`CONTINUOUS`: the stages' rates of change, (STAGES,)."""
+    y: Any
+    """The memory of ``continuous`` as floats."""
+    k: Any
+    """The memory of ``rates`` as floats."""
+
+
+def integrated(port: np.void, feed: np.void, actuator: np.void) -> Integrated:
+    """Return it for records of one actuator, all states zero."""
+    continuous, rates = scratch()
+    return Integrated(port, feed, actuator, continuous, rates, flat(continuous), flat(rates))
 
 
 def scratch(n: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -117,12 +143,13 @@ def add_powers(weight, y, k):
 
 
 @part_of_kernel
-def stages(h, tau, drive, port, feed, actuator, of_volumes, continuous, rates, y, k):
+def stages(h, tau, drive, of_volumes, own):
     """
-    Write the four rates of a classical Runge-Kutta step of ``h`` seconds.
+    Write the four rates of a classical Runge-Kutta step of ``h`` seconds of an `Integrated`.
 
     One loop, so that the compiler has the plant's equations once and not four times.
     """
+    port, feed, actuator, continuous, rates, y, k = own
     share = 0.0     # of the step, at which a stage is
     for stage in range(STAGES):
         write_rates(tau + share * h, continuous[min(stage, 1)], drive, port, feed, actuator,
@@ -143,22 +170,22 @@ def is_torn(h, state, rates):
 
 
 @part_of_kernel
-def rk4_step(h, tau, drive, port, feed, actuator, continuous, rates, y, k, weight):
+def rk4_step(h, tau, drive, weight, own):
     """
-    Advance ``continuous[0]`` by one classical Runge-Kutta step of ``h`` seconds.
+    Advance the state of an `Integrated` by one classical Runge-Kutta step of ``h`` seconds.
 
-    ``continuous[1]`` holds the stage; ``y`` and ``k`` are flat views of it and ``rates``.
     The powers at the beginning of the step enter the energies with ``weight``, in s. A step of
     pressures that ends below the atmosphere is repeated as one of volumes  (C11).
     """
-    own, oil = continuous[0].plant, actuator.plant.chambers
-    of_volumes = own.cushion.end != 0.0 or is_of_volumes(
-        h, own.chambers, own.mechanics.position, own.mechanics.velocity, oil)
+    _, _, actuator, continuous, rates, y, k = own
+    state, plant = continuous[0].plant, actuator.plant
+    of_volumes = state.cushion.end != 0.0 or is_of_volumes(
+        h, state.chambers, state.mechanics.position, state.mechanics.velocity, plant.chambers)
     while True:
         if of_volumes:
-            begin_volumes(own, actuator.plant)
-        stages(h, tau, drive, port, feed, actuator, of_volumes, continuous, rates, y, k)
-        if of_volumes or not is_torn(h, own.chambers, rates):
+            begin_volumes(state, plant)
+        stages(h, tau, drive, of_volumes, own)
+        if of_volumes or not is_torn(h, state.chambers, rates):
             break
         of_volumes = True
     add_powers(weight, y, k)
@@ -166,23 +193,24 @@ def rk4_step(h, tau, drive, port, feed, actuator, continuous, rates, y, k, weigh
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
     if of_volumes:
-        end_volumes(own, actuator.plant)
-    settle(own, actuator.plant)
+        end_volumes(state, plant)
+    settle(state, plant)
 
 
 @kernel
-def end_steps(tau, weight, drive, port, feed, actuator, continuous, rates, y, k):
+def end_steps(tau, weight, drive, own):
     """
     Add the powers after the last step with their ``weight``, in s; return dq/dP of the valve.
 
     Flow over pressure of the supply, in m3/s/Pa, between `VARIED` above and below; the flow is
     that of ``rates[0]``. 0 where the supply has no port.
     """
-    own, oil = continuous[0].plant, actuator.plant.chambers
-    of_volumes = (is_of_volumes(0.0, own.chambers, own.mechanics.position, 0.0, oil)
-                  or own.cushion.end != 0.0)
+    port, feed, actuator, continuous, rates, y, k = own
+    state, plant = continuous[0].plant, actuator.plant
+    of_volumes = (is_of_volumes(0.0, state.chambers, state.mechanics.position, 0.0, plant.chambers)
+                  or state.cushion.end != 0.0)
     if of_volumes:
-        begin_volumes(own, actuator.plant)
+        begin_volumes(state, plant)
     write_rates(tau, continuous[0], drive, port, feed, actuator, of_volumes, rates[0], True)
     slope = 0.0
     if feed.elastance > 0.0:
@@ -195,17 +223,17 @@ def end_steps(tau, weight, drive, port, feed, actuator, continuous, rates, y, k)
         write_rates(tau, continuous[1], drive, port, feed, actuator, of_volumes, rates[2], False)
         slope = conductance(rates[1].totals.supply_volume, rates[2].totals.supply_volume)
     if of_volumes:
-        end_volumes(own, actuator.plant)
+        end_volumes(state, plant)
     add_powers(weight, y, k)
     return slope
 
 
 @kernel
-def rk4_steps(n, h, drive, port, feed, actuator, continuous, rates, y, k):
+def rk4_steps(n, h, drive, own):
     """Take ``n`` steps of `rk4_step` under a constant drive and port."""
     for i in range(n):
-        rk4_step(h, i * h, drive, port, feed, actuator, continuous, rates, y, k, h * simpson(i, n))
-    end_steps(n * h, h * simpson(n, n), drive, port, feed, actuator, continuous, rates, y, k)
+        rk4_step(h, i * h, drive, h * simpson(i, n), own)
+    end_steps(n * h, h * simpson(n, n), drive, own)
 
 
 @kernel

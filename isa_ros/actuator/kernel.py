@@ -11,7 +11,7 @@ from isa_ros.actuator.feed import write_feed
 from isa_ros.actuator.frames import leaves
 from isa_ros.actuator.inbox import latch, lose_pending, merge, settle
 from isa_ros.actuator.integration import (
-    COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
+    COPIES, end_steps, Integrated, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import exchange_frames, hand_over, LINK, receive_samples, send_sample
 from isa_ros.core.kernel import kernel, part_of_kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
@@ -89,16 +89,13 @@ def run_loops(step, state, actuator, reu_state, channels, thermal):
 
 
 @part_of_kernel
-def loops_and_plant(
-        step, tau, port, feed, actuator, continuous, rates, y, k, weight, reu_state, channels,
-        thermal):
+def loops_and_plant(step, tau, weight, own, reu_state, channels, thermal):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
-    state = continuous[0]
-    run_loops(step, state, actuator, reu_state, channels, thermal)
-    rk4_step(PLANT_STEP, tau, reu_state.amplifier, port, feed, actuator,
-             continuous, rates, y, k, weight)
-    if actuator.plant.thermal.is_on:
-        thermal.coil += PLANT_STEP * coil_heat(state.plant.coil, actuator.plant.coil)
+    state, plant = own.continuous[0], own.actuator.plant
+    run_loops(step, state, own.actuator, reu_state, channels, thermal)
+    rk4_step(PLANT_STEP, tau, reu_state.amplifier, weight, own)
+    if plant.thermal.is_on:
+        thermal.coil += PLANT_STEP * coil_heat(state.plant.coil, plant.coil)
 
 
 @kernel
@@ -130,21 +127,23 @@ def take_port(incoming, is_shared, port, state):
 
 
 @part_of_kernel
-def tick_row(first_step, steps, port, feed, actuator, continuous, rates, y, k, reu_state, channels,
-             reply, fed, sample, thermal, plays, link, memory):
+def tick_row(first_step, steps, n, own, link, memory):
     """
-    Advance one actuator by ``steps`` plant steps.
+    Advance the actuator of row ``n`` by ``steps`` plant steps; ``own`` is its `Integrated`.
 
     Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse), its
-    `SAMPLE` at the end of the tick and, of a supply with a port, ``fed``, its `SUPPLY_REPLY`.
-    ``link`` is its row where it has a link, else -1.
+    `SAMPLE` at the end of the tick and, of a supply with a port, its `SUPPLY_REPLY`. ``link`` is
+    its row where it has a link, else -1.
     """
-    state = continuous[0]
+    port, feed, actuator, state = own.port, own.feed, own.actuator, own.continuous[0]
+    reu_state, channels, thermal = memory.reu[n], memory.channels[n], memory.thermals[n]
+    reply, fed, sample = memory.replies[n], memory.fed[n], memory.samples[n]
+    plays = memory.plays[n]
     if actuator.plant.thermal.is_on:
         warm(thermal.oil, actuator.plant)
     if actuator.plant.hysteresis.is_on > 0.0:
         copy_plays(plays, actuator.plant.hysteresis.plays)
-    y[0, TOTALS_AT:] = 0.0
+    own.y[0, TOTALS_AT:] = 0.0
     elastic = stored_elastically(state, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
@@ -155,17 +154,15 @@ def tick_row(first_step, steps, port, feed, actuator, continuous, rates, y, k, r
                 if is_sampled:
                     write_sample(state.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, feed, actuator,
-                            continuous, rates, y, k, PLANT_STEP * simpson(i, steps), reu_state,
-                            channels, thermal)
+            loops_and_plant(first_step + i, i * PLANT_STEP, PLANT_STEP * simpson(i, steps), own,
+                            reu_state, channels, thermal)
         reply.mean_forces[window] = state.totals.impulse / (window_steps * PLANT_STEP)
     slope = end_steps(
-        steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port, feed,
-        actuator, continuous, rates, y, k)
+        steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, own)
     if actuator.plant.hysteresis.is_on > 0.0:
         copy_plays(actuator.plant.hysteresis.plays, plays)
     if feed.elastance > 0.0:
-        write_feed(rates[0].totals.supply_volume, slope, state.totals.energies.drawn, fed)
+        write_feed(own.rates[0].totals.supply_volume, slope, state.totals.energies.drawn, fed)
     else:
         add_tare(steps * PLANT_STEP, port, actuator.plant.valve, state.totals)
     reply.force = exact_force(
@@ -210,11 +207,13 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
     effect at its start, (n,) each; ``memory`` is a `Memory` of n actuators.
     """
     for n in range(len(memory.ports)):
-        continuous = memory.continuous[n * COPIES:(n + 1) * COPIES]
-        rates = memory.rates[n * STAGES:(n + 1) * STAGES]
-        y = memory.states[n * COPIES:(n + 1) * COPIES]
-        k = memory.slopes[n * STAGES:(n + 1) * STAGES]
-        reu, port = memory.reu[n], memory.ports[n]
+        own = Integrated(
+            memory.ports[n], memory.feeds[n], memory.constants[n],
+            memory.continuous[n * COPIES:(n + 1) * COPIES],
+            memory.rates[n * STAGES:(n + 1) * STAGES],
+            memory.states[n * COPIES:(n + 1) * COPIES],
+            memory.slopes[n * STAGES:(n + 1) * STAGES])
+        reu = memory.reu[n]
         link = n if memory.constants[n].link.is_on else -1
         merge(commands[n], memory.pending[n])
         if link < 0 and memory.constants[n].reu.is_frozen:
@@ -223,16 +222,14 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
             latch(memory.pending[n], reu, memory.applied[n])
         else:
             hand_over(first_step, n, memory)
-        take_port(incoming[n], memory.is_shared[n], port, continuous[0])
-        tick_row(first_step, steps, port, memory.feeds[n], memory.constants[n], continuous,
-                 rates, y, k, reu, memory.channels[n], memory.replies[n], memory.fed[n],
-                 memory.samples[n], memory.thermals[n], memory.plays[n], link, memory)
+        take_port(incoming[n], memory.is_shared[n], own.port, own.continuous[0])
+        tick_row(first_step, steps, n, own, link, memory)
         settle(reu.status, memory.applied[n])
         if link < 0:
             memory.observed[n] = memory.samples[n]
         else:
             receive_samples(first_step + steps, n, memory)
-        broken = first_broken(y)
+        broken = first_broken(own.y)
         if broken >= 0:
             return n * STATE_SIZE + broken
     return -1

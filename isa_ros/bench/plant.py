@@ -1,5 +1,7 @@
 """The plant alone, the plant with its REU, and a cylinder with a known solution."""
 
+from functools import partial
+
 from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import actuator_record
@@ -28,15 +30,9 @@ def plant_rows() -> list[Row]:
     rows = [Row(f'floor: {ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0)]
     for model in ('smart_manifold', 'isa_v5'):
         config = default_actuator(model, model)
-        bodies, rates = kernels.scratch()
-        port, feed = np.zeros(1, LOAD_PORT), np.zeros(1, SUPPLY_PORT)
-        constants = actuator_record(config.sheet, 0)
-        flats = kernels.flat(bodies), kernels.flat(rates)
-        step = seconds(
-            lambda: kernels.rk4_steps(
-                PLANT_STEPS, PLANT_STEP, 0.0, port[0], feed[0], constants[0], bodies,
-                rates, *flats),
-            PLANT_STEPS)
+        own = kernels.integrated(np.zeros(1, LOAD_PORT)[0], np.zeros(1, SUPPLY_PORT)[0],
+                                 actuator_record(config.sheet, 0)[0])
+        step = seconds(partial(kernels.rk4_steps, PLANT_STEPS, PLANT_STEP, 0.0, own), PLANT_STEPS)
         rows += [
             Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us', 'real time',
                 PLANT_STEP / step),

@@ -91,15 +91,17 @@ def even_flow(net, gained, at_hose, at_chamber):
 
 
 @kernel
-def hosed_lines(y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts,
-                powers, per_s):
+def hosed_lines(y, oil_a, oil_b, v, p_s, p_t, per_s, plant, rates, counts, powers):
     """
     Return `rigid_lines` through hoses, and the powers that they store and lose outside, W.
 
-    ``more_a`` and ``more_b`` are `denser` of the chambers. The oil that leaves a hose is what its
-    chamber gets, by its mass: e Q of both ends are equal  (C40). ``per_s`` is that of the supply.
+    ``oil_a`` and ``oil_b`` are pressure, elastance and `denser` of the chambers, ``per_s`` is the
+    elastance of the supply. The oil that leaves a hose is what its chamber gets, by its mass: e Q
+    of both ends are equal  (C40).
     """
     own, state = plant.hoses, y.lines
+    p_a, per_a, more_a = oil_a
+    p_b, per_b, more_b = oil_b
     line_a, soft_a, dense_a = hose.hose_contents(state.lack_a, p_a, own)
     line_b, soft_b, dense_b = hose.hose_contents(state.lack_b, p_b, own)
     net_a, net_b, q_p, q_t = rigid_lines(
@@ -128,17 +130,11 @@ def hosed_lines(y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, r
 
 @kernel
 def line_flows(y, oil_a, oil_b, v, p_s, p_t, per_s, plant, rates, counts, powers):
-    """
-    Return `hosed_lines`; without hoses `rigid_lines` with nothing stored or lost outside.
-
-    ``oil_a`` and ``oil_b`` are pressure, elastance and `denser` of the chambers.
-    """
-    p_a, per_a, more_a = oil_a
-    p_b, per_b, more_b = oil_b
+    """Return `hosed_lines`; without hoses `rigid_lines` with nothing stored or lost outside."""
     if plant.hoses.is_on > 0.0:
-        return hosed_lines(
-            y, p_a, p_b, per_a, per_b, more_a, more_b, v, p_s, p_t, plant, rates, counts, powers,
-            per_s)
+        return hosed_lines(y, oil_a, oil_b, v, p_s, p_t, per_s, plant, rates, counts, powers)
+    p_a, per_a, _ = oil_a
+    p_b, per_b, _ = oil_b
     q_a, q_b, q_p, q_t = rigid_lines(
         y, p_a, p_b, per_a + per_s, per_b + per_s, p_s, p_t, plant, rates, counts, powers)
     return q_a, q_b, q_p, q_t, 0.0, 0.0

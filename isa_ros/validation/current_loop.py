@@ -7,7 +7,7 @@ equations 1 and 2, sampled at 10 kHz through the 12 bit converter. Currents are 
 
 from dataclasses import replace
 
-from isa_ros.actuator.integration import flat, rk4_step, scratch
+from isa_ros.actuator.integration import integrated, rk4_step
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig
@@ -79,14 +79,12 @@ def notch() -> float:
 def _static_gain() -> tuple[float, np.ndarray]:
     """Return the static gain of the coil (A/V), and its current after every plant step (A)."""
     constants = actuator_record(model_sheet(MANIFOLD, EXPLICIT), 0)
-    bodies, rates = scratch()
-    arguments = (np.zeros(1, LOAD_PORT)[0], np.zeros(1, SUPPLY_PORT)[0], constants[0], bodies,
-                 rates, flat(bodies), flat(rates))
+    own = integrated(np.zeros(1, LOAD_PORT)[0], np.zeros(1, SUPPLY_PORT)[0], constants[0])
     coil = constants.view(np.recarray)[0].plant.coil
-    state = bodies.view(np.recarray)[0].plant.coil
+    state = own.continuous.view(np.recarray)[0].plant.coil
     current = np.empty(round(OPEN_LOOP_S / PLANT_STEP))
     for k in range(len(current)):
-        rk4_step(PLANT_STEP, 0.0, OPEN_LOOP_V, *arguments, PLANT_STEP)
+        rk4_step(PLANT_STEP, 0.0, OPEN_LOOP_V, PLANT_STEP, own)
         current[k] = coil_current(state, coil)
     return float(current[-1] / OPEN_LOOP_V), current
 

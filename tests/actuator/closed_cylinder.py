@@ -6,7 +6,7 @@ import math
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.integration import flat, rk4_steps, scratch
+from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
@@ -51,10 +51,10 @@ class ClosedCylinder:
         if free:
             own, seals = plant.mechanics, plant.friction
             own.k_s = own.d_s = seals.sigma0 = seals.sigma1 = seals.sigma2 = 0.0
-        self.port, self.feed = np.zeros(1, LOAD_PORT), np.zeros(1, SUPPLY_PORT)
-        self.rows, self.rates = scratch()
-        self.flats = flat(self.rows), flat(self.rates)
-        self.state = self.rows.view(np.recarray)[0]
+        self.port = np.zeros(1, LOAD_PORT)
+        self.integrated = integrated(
+            self.port[0], np.zeros(1, SUPPLY_PORT)[0], self.constants[0])
+        self.state = self.integrated.continuous.view(np.recarray)[0]
         self.own = self.state.plant
         self.own.mechanics.position = self.state.load.position = place
         self.own.chambers.p_a = self.own.chambers.p_b = pressure
@@ -63,8 +63,7 @@ class ClosedCylinder:
     def move(self, steps: int = 1, acceleration: float = 0.0) -> None:
         """Take plant steps with the load at an acceleration (m/s2 | rad/s2)."""
         self.port['a_bias'] = acceleration
-        rk4_steps(steps, PLANT_STEP, 0.0, self.port[0], self.feed[0], self.constants[0],
-                  self.rows, self.rates, *self.flats)
+        rk4_steps(steps, PLANT_STEP, 0.0, self.integrated)
 
     def volumes(self, s: float) -> tuple[float, float]:
         oil = self.plant.chambers

@@ -4,7 +4,7 @@ from dataclasses import replace
 import math
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.integration import flat, rk4_steps, scratch
+from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
 from isa_ros.core.signals import COMMAND, HAS_QUICK_STOP, LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
@@ -48,9 +48,9 @@ def test_a_steady_shaft_loses_what_its_sheet_says(speed):
     """M6 to M8 of the kernels: the load turns it at a speed, the valve is open."""
     constants = actuator_record(SHEET, 0)
     plant = constants.view(np.recarray)[0].plant
-    rows, rates = scratch()
-    state = rows.view(np.recarray)[0]
-    port, feed = np.zeros(1, LOAD_PORT), np.zeros(1, SUPPLY_PORT)
+    port = np.zeros(1, LOAD_PORT)
+    integration = integrated(port[0], np.zeros(1, SUPPLY_PORT)[0], constants[0])
+    state = integration.continuous.view(np.recarray)[0]
     port['supply_pressure'], port['v0'] = 20e6, speed
     state.supply.pressure = 20e6
     state.load.velocity = state.plant.mechanics.velocity = speed
@@ -59,8 +59,7 @@ def test_a_steady_shaft_loses_what_its_sheet_says(speed):
     current = math.copysign(0.006, speed)
     for _ in range(2):      # the second tenth of a second is steady
         state.totals.supply_volume = state.totals.return_volume = state.totals.impulse = 0.0
-        rk4_steps(5000, PLANT_STEP, current, port[0], feed[0], constants[0], rows, rates,
-                  flat(rows), flat(rates))
+        rk4_steps(5000, PLANT_STEP, current, integration)
     own, losses = state.plant, MOTOR.losses()
     assert own.mechanics.position == pytest.approx(turned + speed * 0.2, abs=1e-2)
     drop = float(own.chambers.p_a - own.chambers.p_b)

@@ -24,10 +24,10 @@ class Body:
 
     def __init__(self, sheet: ActuatorSheet, position: float, current: float = 0.0) -> None:
         self.constants = actuator_record(sheet, 0)
-        self.bodies, self.rates = kernels.scratch()
-        self.row = self.bodies.view(np.recarray)[0]
         self.port = np.zeros(1, LOAD_PORT)
-        self.feed = np.zeros(1, SUPPLY_PORT)
+        self.own = kernels.integrated(
+            self.port[0], np.zeros(1, SUPPLY_PORT)[0], self.constants[0])
+        self.row = self.own.continuous.view(np.recarray)[0]
         self.port['supply_pressure'] = self.row.supply.pressure = SUPPLY
         self.current = current
         self.row.plant.mechanics.position = self.row.load.position = position
@@ -37,9 +37,7 @@ class Body:
 
     def run(self, duration: float, h: float = PLANT_STEP) -> None:
         """Advance by ``duration`` (s)."""
-        y, k = kernels.flat(self.bodies), kernels.flat(self.rates)
-        kernels.rk4_steps(round(duration / h), h, self.current, self.port[0], self.feed[0],
-                          self.constants[0], self.bodies, self.rates, y, k)
+        kernels.rk4_steps(round(duration / h), h, self.current, self.own)
 
     @property
     def states(self) -> np.ndarray:

@@ -92,8 +92,8 @@ class OpenLoopRig:
         self._port = local_port(fixture, middle)
         self._port['supply_pressure'], self._feed = SUPPLY, np.zeros(1, SUPPLY_PORT)
         self._plant = self._constants.view(np.recarray)[0].plant
-        self._bodies, self._rates = kernels.scratch()
-        self._y, self._k = kernels.flat(self._bodies), kernels.flat(self._rates)
+        self._own = kernels.integrated(self._port[0], self._feed[0], self._constants[0])
+        _, _, _, self._bodies, self._rates, self._y, self._k = self._own
         body = self._bodies.view(np.recarray)[0]
         body.supply.pressure = SUPPLY
         body.plant.mechanics.position = body.load.position = middle
@@ -106,8 +106,7 @@ class OpenLoopRig:
         self._y[0] = self._start
         rows = []
         for current in piece.currents:
-            kernels.rk4_steps(round(ROW / h), h, current, self._port[0], self._feed[0],
-                              self._constants[0], self._bodies, self._rates, self._y, self._k)
+            kernels.rk4_steps(round(ROW / h), h, current, self._own)
             rows.append(self._y[0].copy())
         return np.array(rows)
 
