@@ -27,8 +27,7 @@ SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRAC
             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
 """Of numba, that change machine code: with one in the environment all kernels are compiled."""
 _RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
-_MAKERS = ('compiler', 'kinds', 'lowering', 'lowering_shortcuts', 'object_runtime', 'objects',
-           'shortcuts', 'words')
+_MAKERS = ('compiler', 'kinds', 'lowering', 'object_runtime', 'objects', 'shortcuts', 'words')
 _ROOM = (0,) * RESULT_WORDS
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))

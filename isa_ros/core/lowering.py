@@ -11,8 +11,7 @@ from collections.abc import Iterator
 import gc
 from typing import Any
 
-from isa_ros.core.lowering_shortcuts import LOWERING
-from isa_ros.core.shortcuts import take
+from isa_ros.core.shortcuts import SHORTCUTS, take
 from llvmlite.ir.instructions import CallInstr
 from numba import _dynfunc  # type: ignore[attr-defined]
 from numba.core.codegen import CPUCodeLibrary
@@ -104,7 +103,7 @@ def declare() -> None:
 
 def lower_only() -> None:
     """Let this process lower kernels from now on: they get into objects, and none can be run."""
-    take(LOWERING)
+    take(SHORTCUTS)
     context: Any = cpu_target.target_context
     rtsys.initialize(context)   # its functions are compiled as always
     context.codegen()._library_class = Lowered

@@ -1,7 +1,6 @@
 """What tests of shortcuts through numba share."""
 
-from isa_ros.core.lowering_shortcuts import LOWERING
-from isa_ros.core.shortcuts import Shortcut
+from isa_ros.core.shortcuts import Shortcut, SHORTCUTS
 from numba.core import ir
 
 HERE = ir.Loc('here.py', 3)
@@ -9,7 +8,7 @@ HERE = ir.Loc('here.py', 3)
 
 def shortcut(name: str) -> Shortcut:
     """Return a shortcut by the name of what it replaces."""
-    found = [own for own in LOWERING if f'{own.owner.__name__}.{own.name}' == name]
+    found = [own for own in SHORTCUTS if f'{own.owner.__name__}.{own.name}' == name]
     assert len(found) == 1
     return found[0]
 

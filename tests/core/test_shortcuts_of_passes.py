@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 import warnings
 
-from isa_ros.core import lowering_shortcuts
+from isa_ros.core import shortcuts
 from numba.core import errors, ir, typeinfer
 from numba.core.compiler_machinery import FunctionPass
 import pytest
@@ -108,7 +108,7 @@ def test_a_pass_runs_whole_and_is_told_to_who_listens(monkeypatch):
     assert passed.analysis == 'known' and told == []
     for k, printed in enumerate(('_print_before', '_print_after', '_print_wrap')):
         run(SimpleNamespace(**{**quiet, printed: ['noted']}), k, passed, 'state')
-    monkeypatch.setitem(lowering_shortcuts.event._registered, 'numba:run_pass', ['listener'])
+    monkeypatch.setitem(shortcuts.event._registered, 'numba:run_pass', ['listener'])
     run(SimpleNamespace(**quiet), 3, passed, 'state')
     assert told == [0, 1, 2, 3] and len(steps) == 3
 
