@@ -13,7 +13,7 @@ from isa_ros.nodes.lockstep.steady_ticks import SteadyTicks
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.run.wire.board import are_possible
 from isa_ros.run.wire.coordinating import TickRound
-from isa_ros.run.wire.steps import encode_tick
+from isa_ros.run.wire.steps import encode_begin, encode_tick, StepKind
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
@@ -224,6 +224,29 @@ def test_ticks_of_the_loop_are_a_sign_of_the_coordinator(observer, looped, monke
             robot.tick(k)
         wait_for(lambda: all(end._last_message >= before for end in robot.ends), 'the sign')
     assert sum(looped) > 60
+
+
+def test_an_announcement_of_the_run_leaves_its_ticks_to_the_loop(observer, looped, monkeypatch):
+    """The bytes are those without it; a begin that names others ends the run for the loop too."""
+    with driven(observer) as robot:
+        expected = [robot.tick(k, target(k)) for k in range(60)]
+        robot.transport.close()
+    with driven(observer) as robot:
+        seen: list[tuple[StepKind, int]] = []
+        for k, end in enumerate(robot.ends):
+            handle = end._handle
+            monkeypatch.setattr(end, '_handle', lambda step, k=k, handle=handle: (
+                handle(step), seen.append((step.kind, k))))
+        found = [robot.tick(k, target(k)) for k in range(30)]
+        seen.clear()
+        robot.transport._announce()
+        wait_for(lambda: {(StepKind.BEGIN, 0), (StepKind.BEGIN, 1)} <= {*seen}, 'it')
+        assert all(end._ticks.are_next for end in robot.ends)
+        found += [robot.tick(k, target(k)) for k in range(30, 60)]
+        assert found == expected and StepKind.TICK not in dict(seen)
+        transport = robot.transport
+        transport._send(encode_begin(transport._run_id, [bytes(8)] * 2))
+        wait_for(lambda: not any(end._ticks.are_next for end in robot.ends), 'the other begin')
 
 
 @pytest.mark.parametrize('is_foreign', [False, True], ids=['a save', 'a tick of another run'])

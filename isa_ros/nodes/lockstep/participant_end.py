@@ -167,7 +167,7 @@ class ParticipantEnd:
         if step.run_id == self._run_id and self._answered == (step.kind, step.tick) and (
                 self._last[0] is AnswerKind.DONE):
             ticks.expect(step, self._index)
-        else:
+        elif step.run_id != self._run_id or step.kind is not StepKind.BEGIN:    # that it goes on
             ticks.forget()
 
     def _handle(self, step: Step) -> None:
