@@ -18,7 +18,7 @@ from isa_ros.actuator.requests import (
 from isa_ros.actuator.rest import put_at_rest
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
-from isa_ros.actuator.setpoint_in_force import setpoint_after, SetpointInForce
+from isa_ros.actuator.setpoint_in_force import gain_after, setpoint_after, SetpointInForce
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.actuator.ticking import bound_tick, ticked
 from isa_ros.actuator.timing import Timing
@@ -214,8 +214,8 @@ class SmartActuator:
     def parameter(self, name: str) -> float | str:
         """Return a value as it will be at the next tick, set by `tune`, a fault or a command."""
         own = self.tuning.known(name)
-        value: float = (getattr(self.setpoint, GAINS[own.name]) if own.name in GAINS
-                        else self.tuning.value(own.name))
+        value: float = (gain_after(self._pending, self._reu, GAINS[own.name])
+                        if own.name in GAINS else self.tuning.value(own.name))
         return own.shown(value) if name == own.name else value / own.scale
 
     def tick(self, port: np.void | None = None) -> None:

@@ -24,15 +24,20 @@ class SetpointInForce(NamedTuple):
     """Of a mode within the force loop; None: its effort counts."""
 
 
+def gain_after(pending: np.record, reu: np.record, gain: str) -> float:
+    """Return one of `GAINS_OF_COMMAND` after the ``pending`` command has taken effect."""
+    given = pending[gain]
+    return float(given if int(pending.kinds) & WITH_GAINS and not np.isnan(given)
+                 else reu.setpoint[gain])
+
+
 def setpoint_after(pending: np.record, reu: np.record) -> SetpointInForce:
     """Return the setpoint of a `REU_STATE` after the ``pending`` command has taken effect."""
     kinds, own = int(pending.kinds), reu.setpoint
     motion = pending if kinds & HAS_SETPOINT else own
-    stiffness, damping = (
-        pending[gain] if kinds & WITH_GAINS and not np.isnan(pending[gain]) else own[gain]
-        for gain in GAINS_OF_COMMAND)
+    stiffness, damping = (gain_after(pending, reu, gain) for gain in GAINS_OF_COMMAND)
     reference = (pending.reference if kinds & HAS_REFERENCE else
                  own.reference if own.is_reference and motion is own else None)
     return SetpointInForce(
-        float(motion.position), float(motion.velocity), float(motion.effort), float(stiffness),
-        float(damping), None if reference is None else float(reference))
+        float(motion.position), float(motion.velocity), float(motion.effort), stiffness, damping,
+        None if reference is None else float(reference))
