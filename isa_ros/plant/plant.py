@@ -18,7 +18,7 @@ from isa_ros.plant import (
 from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.counterbalance import CounterbalanceHolding
 from isa_ros.plant.cushion_sheets import Cushion, NoneCushion
-from isa_ros.plant.hose import LumpedHoses, NoneHoses
+from isa_ros.plant.hose_sheets import LumpedHoses, NoneHoses, per_wall
 from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.motor import add_losses, Motor
 from isa_ros.plant.pilot_check import PilotCheckHolding
@@ -85,7 +85,7 @@ class PlantSheet(Parameters):
         """Refuse load-holding valves without hoses, and a wall that makes oil stiffer."""
         super().__post_init__()
         if isinstance(self.hoses, LumpedHoses):
-            hose.per_wall(self.hoses, self.oil.effective_bulk_modulus)
+            per_wall(self.hoses, self.oil.effective_bulk_modulus)
             return
         for name in ('holding_a', 'holding_b'):
             if not isinstance(getattr(self, name), NoneHolding):

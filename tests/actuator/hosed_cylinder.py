@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.core.parameter import Parameters
 from isa_ros.plant.cavitation import lack
 from isa_ros.plant.counterbalance import CounterbalanceHolding
-from isa_ros.plant.hose import ExpandingWall, LumpedHoses, smooth_drop
+from isa_ros.plant.hose_sheets import ExpandingWall, LumpedHoses, smooth_drop
 from isa_ros.plant.load_holding import NoneHolding
 from isa_ros.plant.pilot_check import PilotCheckHolding
 from isa_ros.plant.service_lines import sensed_pressures

@@ -9,8 +9,9 @@ from isa_ros.errors import ParameterError
 from isa_ros.plant import hose
 from isa_ros.plant.cavitation import lack
 from isa_ros.plant.hose import (
-    EffectiveWall, ExpandingWall, hose_contents, hose_flow, hoses_record, LumpedHoses, NoneHoses,
-    outward, RigidWall, series_flow, series_slope, smooth_drop, soft_volume)
+    hose_contents, hose_flow, hoses_record, outward, series_flow, series_slope, soft_volume)
+from isa_ros.plant.hose_sheets import (
+    EffectiveWall, ExpandingWall, LumpedHoses, NoneHoses, RigidWall, smooth_drop)
 import numpy as np
 import pytest
 from scipy.optimize import brentq

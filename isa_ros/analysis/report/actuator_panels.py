@@ -5,7 +5,7 @@ from isa_ros.analysis.report.panels import Curve, drawn, extent, Group, Panel
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LPM, MILLI, MPA
-from isa_ros.plant.hose import LumpedHoses
+from isa_ros.plant.hose_sheets import LumpedHoses
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.wiring import active
 from isa_ros.text.table import digits

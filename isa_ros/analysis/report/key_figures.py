@@ -8,7 +8,7 @@ from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LITRE, MILLI, MPA
-from isa_ros.plant.hose import LumpedHoses
+from isa_ros.plant.hose_sheets import LumpedHoses
 from isa_ros.reu.wiring import active
 from isa_ros.text.table import Cells, digits
 import numpy as np
