@@ -30,21 +30,21 @@ def time_word_of(t_ns):
 
 
 @kernel
-def pack_links(
-        t_ns, tick_start_ns, start_ns, at, links, samples, applied, sent, words, values):
+def pack_links(t_ns, tick_start_ns, start_ns, links, samples, applied, words, values):
     """
-    Write the words of all links from place ``at`` on.
+    Write the words of all ``links``, a `PackedLinks`.
 
-    ``links`` are the rows with a link, ``samples`` the floats of every `SAMPLE`, ``applied`` and
-    ``sent`` `COMMAND` rows; ``start_ns`` is the time of stamps at t = 0.
+    ``samples`` are the floats of every `SAMPLE`, ``applied`` `COMMAND` rows; ``start_ns`` is the
+    time of stamps at t = 0.
     """
-    for row in links:
+    at = links.first[0]
+    for row in links.rows:
         words[at] = time_word_of(
             start_ns + t_ns - int(samples[row, _AGE] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
         due = applied[row].due_step
         words[at + 1] = time_word_of(
             start_ns + (due * PLANT_STEP_NS if due > 0 else tick_start_ns))
-        command = sent[row]
+        command = links.sent[row]
         kinds = command.kinds
         for k in range(2, WORDS):
             values[at + k] = np.nan

@@ -81,8 +81,7 @@ def pack(own):
         for j in range(len(body)):
             values[at] = body[j]
             at += 1
-    pack_links(end_ns, begin_ns, start_ns, own.links.first[0], own.links.rows, own.samples,
-               own.applied, own.links.sent, words, values)
+    pack_links(end_ns, begin_ns, start_ns, own.links, own.samples, own.applied, words, values)
     for k in range(len(own.target.places)):
         own.target.block[own.target.places[k]] = words[own.target.sources[k]]
     return 0

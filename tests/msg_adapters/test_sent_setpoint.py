@@ -8,7 +8,7 @@ from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
     HAS_SETPOINT, SAMPLE)
 from isa_ros.errors import SetpointError
-from isa_ros.run.link_packing import pack_links, WORDS
+from isa_ros.run.link_packing import pack_links, PackedLinks, WORDS
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
 from msg_adapters.setpoint import applied_setpoint, sent_to_command
@@ -33,8 +33,9 @@ def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled:
     pack = pack_links if compiled else pack_links.py_func
     sample = np.zeros(1, SAMPLE)
     sample['age'] = age
-    pack(T_NS, TICK_START_NS, STAMPS_NS, 0, np.array([0]), floats(sample), applied,
-         command.view(np.recarray), words, words.view(np.float64))
+    links = PackedLinks(np.array([0]), np.array([0]), command.view(np.recarray))
+    pack(T_NS, TICK_START_NS, STAMPS_NS, links, floats(sample), applied, words,
+         words.view(np.float64))
     return words
 
 

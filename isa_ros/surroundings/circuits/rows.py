@@ -166,14 +166,15 @@ def _show_whole(row, state, nodes, elements, is_return, whole):
 
 
 @kernel
-def show(rows, state, rates, nodes, elements, is_return, at_rest, gas, oil, samples):
+def show(own):
     """
     Write the samples of a circuit at the end of a tick; what concerns actuators is there.
 
-    ``rates`` are d(state)/dt without what actuators draw, ``is_return`` of each element whether
-    it is of the return side, (m,), ``gas`` the volumes of gas at t = 0, (n,), ``oil`` what
-    actuators have drawn from each node and returned to it, (2, n).
+    ``own`` is a `ShownRows` of `isa_ros.surroundings.circuits.ticking`.
     """
+    rows, samples, of = own.rows, own.samples, own.flowing
+    at_rest, gas, oil = own.at_rest, own.gas, own.oil
+    state, nodes, elements = of.state, of.nodes, of.elements
     n = len(nodes)
     for k in range(len(rows)):
         row, sample = rows[k], samples[k]
@@ -183,7 +184,7 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, gas, oil, samp
         if row.kind == OF_WAY:
             _show_way(row, state, nodes, elements, sample)
         elif row.kind == OF_PLACE:
-            _show_place(row, state, rates, nodes, elements, sample)
+            _show_place(row, state, of.rates, nodes, elements, sample)
             i = row.inlet
             _oil_of_place(i, state, oil, gas[i] - gas_volume(
                 sample.pressure, state[n + i], nodes[i]), elements, sample)
@@ -198,4 +199,4 @@ def show(rows, state, rates, nodes, elements, is_return, at_rest, gas, oil, samp
     samples[0].stored_energy = stored_in(state, nodes, elements)
     for k in range(len(rows)):
         samples[k].stored_energy -= at_rest[k]
-    _show_whole(rows[0], state, nodes, elements, is_return, samples[0])
+    _show_whole(rows[0], state, nodes, elements, own.is_return, samples[0])

@@ -93,17 +93,23 @@ class Nodes(NamedTuple):
 
 
 class ShownRows(NamedTuple):
-    """Memory of `show_rows`; the arrays as `isa_ros.surroundings.circuits.rows.show` has them."""
+    """Memory of `show_rows`."""
 
     flowing: Flowing
     none: np.ndarray
     """Zeros, (n,)."""
     rows: np.ndarray
+    """What each sample shows, (k,)."""
     is_return: np.ndarray
+    """Whether an element is of the return side, (m,)."""
     at_rest: np.ndarray
+    """Stored energies at t = 0, (k,)."""
     gas: np.ndarray
+    """Volumes of gas at t = 0, (n,)."""
     oil: np.ndarray
+    """What actuators have drawn from each node and returned to it, (2, n)."""
     samples: np.ndarray
+    """`SUPPLY_SAMPLE`, (k,)."""
     heating: Heating
 
 
@@ -285,7 +291,6 @@ def show_rows(own):
     """Write the rates and the samples at the end of a tick; return 0."""
     of = own.flowing
     circuit_rates(of.state, own.none, of.nodes, of.elements, of.work[0], of.rates)
-    show(own.rows, of.state, of.rates, of.nodes, of.elements, own.is_return, own.at_rest, own.gas,
-         own.oil, own.samples)
+    show(own)
     show_warmth(own.heating, own.samples)
     return 0
