@@ -27,7 +27,7 @@ from isa_ros.plant.valve_sheets import DataSheetValve
 from isa_ros.reu import dither
 from isa_ros.reu.block import Pid
 from isa_ros.reu.block_drive import BlockWiring
-from isa_ros.reu.cascade import reu_record
+from isa_ros.reu.cascade import KnownPlant, reu_record
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation, LINEARISED
 from isa_ros.reu.flow_stop import end_on_holding_valves
 from isa_ros.reu.lead_lag import LeadLag
@@ -255,11 +255,12 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     known = plant_record(sound(sheet.plant))
     if known[0].hoses.is_on:    # the oil of a hose is as soft as more of it in the chamber
         known[0].chambers.dead_volume += soft_volume(known[0].hoses)
-    reu = reu_record(
-        sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
-        known_model(known[0], output_per_spool(sheet)),
-        valve_lag(known[0], sheet.reu), null_speed(known[0]), known[0].sensors.encoder,
-        known[0].valve.k_spool, known[0].coil.parallel, block_wiring(sheet))
+    reu = reu_record(sheet.reu, offset_steps, KnownPlant(
+        stroke=known[0].chambers.stroke, stiffness=force_stiffness(known[0]),
+        model=known_model(known[0], output_per_spool(sheet)), lag=valve_lag(known[0], sheet.reu),
+        null_speed=null_speed(known[0]), resolution=known[0].sensors.encoder,
+        k_spool=known[0].valve.k_spool, parallel=known[0].coil.parallel,
+        block=block_wiring(sheet)))
     reu['rules']['flow']['is_endless'] = float(sheet.is_endless)
     if known[0].holding_a.kind or known[0].holding_b.kind:
         end_on_holding_valves(reu['rules']['flow'])

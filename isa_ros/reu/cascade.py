@@ -9,6 +9,8 @@ equation 8, current: equation 10): it only samples and holds its reference.
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
 
+from typing import NamedTuple
+
 from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import MEASURED
@@ -76,18 +78,29 @@ REU_STATE = np.dtype([
 ])
 
 
-def reu_record(
-        reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
-        model: np.record, lag: float, null_speed: float, resolution: float, k_spool: float,
-        parallel: float, block: BlockWiring = BlockWiring()) -> np.ndarray:
-    """
-    Return the `REU` record, shape (1,).
+class KnownPlant(NamedTuple):
+    """What the REU knows of its actuator, SI."""
 
-    ``stiffness`` (POINTS,) is the stiffness in the force loop over the stroke, ``model`` the
-    `LINEARISED` record, a linearising block's and a stop's model of the actuator; ``lag`` of the
-    valve in s, ``null_speed`` with its slope about null over the whole travel, ``resolution`` of
-    the encoder.
-    """
+    stroke: float
+    stiffness: np.ndarray
+    """In the force loop, over the stroke, (POINTS,)."""
+    model: np.record
+    """`LINEARISED`, of a linearising block and of stops."""
+    lag: float
+    """Of the valve."""
+    null_speed: float
+    """With the valve's slope about null over its whole travel."""
+    resolution: float
+    """Of the encoder."""
+    k_spool: float
+    """Of spool per series-scale current."""
+    parallel: float
+    """Amplifier current per series-scale current."""
+    block: BlockWiring
+
+
+def reu_record(reu: Reu, offset_steps: int, plant: KnownPlant) -> np.ndarray:
+    """Return the `REU` record, shape (1,)."""
     record = np.zeros(1, REU)
     row = record[0]
     steps = loop_steps(reu)
@@ -96,23 +109,24 @@ def reu_record(
         sheet = getattr(reu, name)
         row[f'{name}_kind'] = KINDS[type(sheet)]
         if isinstance(sheet, Pid):
-            row[name] = block_record(sheet, schedule_table(sheet.gain_schedule, stiffness))
+            row[name] = block_record(sheet, schedule_table(sheet.gain_schedule, plant.stiffness))
     if isinstance(reu.position, Impedance):
         row['impedance'] = impedance_record(reu.position)
     if isinstance(reu.force, FeedbackLinearisation):
         row['linearisation'] = linearisation_record(
-            reu.force, reu.speed.filter_hz, model)
+            reu.force, reu.speed.filter_hz, plant.model)
     if isinstance(reu.current, LeadLag):
         row['lead_lag'] = lead_lag_record(reu.current)
     for name, period in steps.items():
         row[f'{name}_steps'] = period
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
-    row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
+    row['stroke'], row['k_spool'], row['parallel'] = plant.stroke, plant.k_spool, plant.parallel
     conversion = steps['current'] * PLANT_STEP
     row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
-        model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration,
-        resolution), block)
-    row['dither'] = PERCENT * reu.current.dither_percent * model.x_max / k_spool * parallel
+        plant.model, plant.stiffness, plant.lag, plant.null_speed, conversion,
+        reu.device.quick_stop_deceleration, plant.resolution), plant.block)
+    row['dither'] = (PERCENT * reu.current.dither_percent * plant.model.x_max / plant.k_spool
+                     * plant.parallel)
     row['dither_steps'] = reu.current.half_period * steps['current']
     row['is_frozen'], row['watchdog'] = reu.frozen, reu.watchdog_ms * MILLI
     return record
