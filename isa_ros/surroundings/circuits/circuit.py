@@ -7,10 +7,8 @@ then advances over the same interval with the mean flows. Equation E12.
 """
 
 from collections.abc import Sequence
-from functools import cached_property
 
 from isa_ros.core.bound import Bound, Rebound
-from isa_ros.core.signals import LOAD_REPLY, SUPPLY_REPLY
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.circuits import ticking as tick
 from isa_ros.surroundings.circuits.fed import Fed
@@ -179,39 +177,6 @@ class Circuit:
         """Return the manifolds that feed actuators at the start of the next tick."""
         self._fill_nodes.run()
         return [FedNode(*own) for own in self._ports.tolist()]
-
-    def advance_nodes(
-            self, drawn: Sequence[float], paid: Sequence[float] | None,
-            returned: Sequence[float]) -> None:
-        """
-        Advance by one tick in which these volumes were drawn at its nodes, m3.
-
-        ``paid`` is the energy that the actuators counted for them, J: the integral of P q over
-        the tick; None: they paid the pressures of its start. ``returned`` are the volumes given
-        to the return, m3.
-        """
-        replies, answers, held, moved = self._alone
-        replies['supply_volume'], replies['return_volume'] = drawn, returned
-        if paid is None:
-            held.run()
-        else:
-            answers['paid'] = paid
-            moved.run()
-        self.settle()
-
-    def advance_held(self, drawn: Sequence[float], returned: Sequence[float]) -> None:
-        """Advance by one tick over which the actuators paid the pressures of its start."""
-        self.advance_nodes(drawn, None, returned)
-
-    @cached_property
-    def _alone(self) -> tuple[np.ndarray, np.ndarray, Bound, Bound]:
-        """Return a row for each node, and what advances with them, held or paid."""
-        n = len(self._fed)
-        replies, answers = np.zeros(n, LOAD_REPLY), np.zeros(n, SUPPLY_REPLY)
-        groups = self._groups([[k] for k in range(n)], [()] * n)
-        held, moved = (Bound(tick.advance, tick.CircuitTick(
-            self._shown, groups, self._is_due, replies, own)) for own in (answers[:0], answers))
-        return replies, answers, held, moved
 
     def _show(self) -> None:
         self._show_rows.run()

@@ -2,6 +2,7 @@
 
 from isa_ros.surroundings.circuits.circuit import Circuit
 import numpy as np
+from tests.surroundings.circuits.advanced import advance
 
 STATION = """
 tank: {kind: tank, pressure_mpa: 0.2}
@@ -33,7 +34,7 @@ def driven(circuit: Circuit, ticks: int, rng: np.random.Generator) -> float:
     for _ in range(ticks):
         drawn = rng.uniform(-2.0, 8.0, 2) * LPM * 1e-3
         returned = drawn * rng.uniform(0.3, 0.9, 2)
-        circuit.advance_held(drawn.tolist(), returned.tolist())
+        advance(circuit, drawn.tolist(), returned.tolist())
         through += float(abs(drawn).sum() + abs(returned).sum())
     return through
 

@@ -8,6 +8,7 @@ from isa_ros.surroundings.circuits.nodes import gas_volume
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 import pytest
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import Bench, circuit_of, sheet_of, SIMPLE
 from tests.surroundings.circuits.station import surplus
 
@@ -67,9 +68,9 @@ def test_its_sample_has_the_temperature_of_its_gas(tau: float, cold: float) -> N
     assert gas['gas_temperature'] == pytest.approx(31.0, abs=1e-9)
     before = place['pressure'] + ATMOSPHERE
     for _ in range(100):
-        circuit.advance_held([1e-6], [0.0])
+        advance(circuit, [1e-6], [0.0])
     for _ in range(1000 if tau < 1.0 else 0):
-        circuit.advance_held([0.0], [0.0])
+        advance(circuit, [0.0], [0.0])
     ratio = (place['pressure'] + ATMOSPHERE) / before
     assert 0.5 < ratio < 0.9
     fall = 304.15 * (1.0 - ratio ** ((KAPPA - 1.0) / KAPPA))
@@ -113,7 +114,7 @@ def test_gas_that_is_lost_leaves_its_oil(lost: float) -> None:
     account_is_whole(circuit)
     given = 0.0
     while circuit.pressures[0][0] > 0.0:
-        circuit.advance_held([1e-6], [0.0])
+        advance(circuit, [1e-6], [0.0])
         given += 1e-6
         assert given < 1e-3
     # what stood in the shell, 1 l less a gas of 10.1 MPa l at 20.1 MPa; gas of the atmosphere
@@ -157,7 +158,7 @@ def test_the_energy_of_one_that_runs_empty_and_is_filled_closes(lpm: float) -> N
     tick = lpm / 60e6
     for drawn, end in ((tick, 0.0), (-tick, 15e6)):
         while (circuit.pressures[0][0] - end) * drawn > 0.0:
-            circuit.advance_held([drawn], [0.0])
+            advance(circuit, [drawn], [0.0])
             assert surplus(circuit) == pytest.approx(0.0, abs=2.5e-5)
 
 

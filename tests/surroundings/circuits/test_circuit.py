@@ -8,6 +8,7 @@ from isa_ros.surroundings.circuits.sheet import CircuitSupply
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of, SIMPLE, SLOPE
 from tests.surroundings.circuits.station import driven, LPM, STATION, surplus
 
@@ -83,7 +84,7 @@ def test_it_follows_an_independent_model() -> None:
     x = np.array([19.8e6, 0.0])
     for k in range(150):
         drawn = LPM * (6.0 if k < 80 else -2.0)
-        circuit.advance_held([drawn * 1e-3], [0.0])
+        advance(circuit, [drawn * 1e-3], [0.0])
         x = solve_ivp(rates, (0.0, 1e-3), x, args=(drawn,), rtol=1e-10, atol=1e-9).y[:, -1]
         # a corner of max() inside a step of the RK4 (20 us) costs at most r h of its swing
         assert circuit.pressures[0][0] == pytest.approx(x[0], rel=2e-6)
@@ -97,7 +98,7 @@ def test_each_part_has_the_oil_that_came_and_went() -> None:
     n = len(circuit._network.nodes)
     start, drawn, returned = circuit.state[:n].copy(), 2e-6, 1.5e-6
     for _ in range(100):
-        circuit.advance_held([drawn, 0.0], [returned, 0.0])
+        advance(circuit, [drawn, 0.0], [returned, 0.0])
     rows = dict(zip(sheet_of(text).by_name, circuit.samples[1:]))
     taken = {place: float(circuit.state[k] - start[k])
              for k, place in enumerate(circuit._network.places)}
@@ -136,7 +137,7 @@ def test_the_power_limit_is_felt() -> None:
     limited = SIMPLE.replace('displacement_ml: 10.0', 'displacement_ml: 20.0, power_w: 1000.0')
     circuit = circuit_of(limited, 'main')
     for _ in range(2000):
-        circuit.advance_held([15.0 * LPM * 1e-3], [0.0])
+        advance(circuit, [15.0 * LPM * 1e-3], [0.0])
     p, own = circuit.pressures[0][0], circuit.samples[2]
     # at rest leakage and what is drawn are the whole flow
     assert own['pump_flow'] == pytest.approx(15.0 * LPM, rel=1e-3, abs=0.0)
@@ -147,7 +148,7 @@ def test_the_compensator_holds_the_pressure() -> None:
     """At 6 of 15 l/min, with leakage, the pressure is that share of the band lower."""
     circuit = circuit_of(SIMPLE, 'main')
     for _ in range(1000):
-        circuit.advance_held([6.0 * LPM * 1e-3], [0.0])
+        advance(circuit, [6.0 * LPM * 1e-3], [0.0])
     p = circuit.pressures[0][0]
     share = (6.0 * LPM + 0.1e-6 * LPM * p) / (15.0 * LPM)
     assert p == pytest.approx(20e6 - 0.5e6 * share, abs=10.0)
@@ -163,7 +164,7 @@ def test_the_return_side_has_its_pressure() -> None:
     """6 l/min through 200 l/min/MPa are 0.03 MPa above the tank; the bypass helps from 0.35."""
     circuit = circuit_of(STATION, 'left', 'right')
     for _ in range(300):
-        circuit.advance_held([0.0, 0.0], [6.0 * LPM * 1e-3, 0.0])
+        advance(circuit, [0.0, 0.0], [6.0 * LPM * 1e-3, 0.0])
     assert circuit.pressures[0][1] == pytest.approx(0.23e6, abs=10.0)
     assert circuit.pressures[1][1] == circuit.pressures[0][1]
     left = circuit.samples[1 + list(sheet_of(STATION).by_name).index('left')]
@@ -172,7 +173,7 @@ def test_the_return_side_has_its_pressure() -> None:
     dirty = STATION.replace('lpm_per_mpa: 200.0', 'lpm_per_mpa: 200.0, clogged: 1.0')
     circuit.change(sheet_of(dirty))
     for _ in range(300):
-        circuit.advance_held([0.0, 0.0], [6.0 * LPM * 1e-3, 0.0])
+        advance(circuit, [0.0, 0.0], [6.0 * LPM * 1e-3, 0.0])
     assert circuit.pressures[0][1] == pytest.approx(0.2e6 + 0.35e6 + 0.03e6, abs=10.0)
 
 
@@ -182,7 +183,7 @@ def test_power_is_that_of_the_tick_and_its_peak_the_largest() -> None:
     at = [0, circuit._row_of['left'], circuit._row_of['right']]
     for drawn in ((6.0, 3.0), (9.0, 1.0), (2.0, 5.0), (1.0, 2.0)):
         before = circuit.samples['energy'][at]
-        circuit.advance_held([flow * LPM * 1e-3 for flow in drawn], [1e-6, 2e-6])
+        advance(circuit, [flow * LPM * 1e-3 for flow in drawn], [1e-6, 2e-6])
         powers.append(circuit.samples['power'][at])
         grown = (circuit.samples['energy'][at] - before) / 1e-3
         assert powers[-1] == pytest.approx(grown, rel=1e-9, abs=0.0)
@@ -195,7 +196,7 @@ def test_what_its_port_says_is_what_it_does() -> None:
     """Inflow, capacity, slope and trend at a manifold against a step of the network itself."""
     circuit = circuit_of(STATION, 'left', 'right')
     for _ in range(50):
-        circuit.advance_held([6.0 * LPM * 1e-3, 2.0 * LPM * 1e-3], [0.0, 0.0])
+        advance(circuit, [6.0 * LPM * 1e-3, 2.0 * LPM * 1e-3], [0.0, 0.0])
     for own, node in zip(circuit.nodes(), circuit._nodes):
         n = len(circuit._network.nodes)
         state = circuit.state.copy()
@@ -244,7 +245,7 @@ def test_what_leaks_is_outside() -> None:
     leaking = SIMPLE.replace('oil_volume_l: 0.5', 'oil_volume_l: 0.5, leakage_lpm_per_mpa: 0.3')
     circuit = circuit_of(leaking, 'main')
     for _ in range(1000):
-        circuit.advance_held([0.0], [0.0])
+        advance(circuit, [0.0], [0.0])
     # 6 l/min at 20 MPa, once the pump has found its new flow
     assert circuit.state[0] == pytest.approx(0.3 * 19.7 * LPM, rel=0.02, abs=0.0)
     assert surplus(circuit) == pytest.approx(0.0, abs=1e-6 * float(

@@ -11,6 +11,7 @@ from isa_ros.surroundings.circuits.plan import network_of
 from isa_ros.surroundings.circuits.warmth import coldest_oil, warmth_of
 import numpy as np
 import pytest
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of, SIMPLE
 from tests.surroundings.circuits.station import STATION
 
@@ -102,7 +103,7 @@ def test_nothing_colder_than_the_start_is_met_without_a_way() -> None:
     own = sheet_of(alone)
     assert coldest_oil(own, warmth_of(own)).thickness == pytest.approx(walther(31.0) / 32.0)
     circuit = circuit_of(alone, 'main')
-    circuit.advance_held([1e-6], [0.0])
+    advance(circuit, [1e-6], [0.0])
     assert circuit.samples[0]['heat'] > 0.0
 
 

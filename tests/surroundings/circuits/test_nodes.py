@@ -7,6 +7,7 @@ from isa_ros.surroundings.circuits.nodes import (
     node_capacity, node_content, node_energy, node_pressure, phase_of, temperature_with, VAPOUR)
 import numpy as np
 import pytest
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import Bench, circuit_of, MS, sheet_of, SIMPLE, SLOPE
 from tests.surroundings.circuits.station import surplus
 
@@ -20,14 +21,14 @@ def test_missing_oil_is_a_cavity_that_is_filled_again() -> None:
     circuit = circuit_of(STANDS, 'main')
     start = circuit.pressures[0][0]
     for _ in range(100):
-        circuit.advance_held([2e-7], [0.0])
+        advance(circuit, [2e-7], [0.0])
     assert circuit.pressures[0][0] == VAPOUR
     # the step in which the cavity opens errs by half a step's oil squared over C
     corner = 0.5 * (2e-7 / circuit._steps) ** 2 / C
     assert surplus(circuit) == pytest.approx(0.0, abs=2.0 * corner)
     assert corner < 1e-3 < 1e-2 < abs(VAPOUR) * 1.1e-5      # of the cavity of 11 ml
     for _ in range(100):
-        circuit.advance_held([-2e-7], [0.0])
+        advance(circuit, [-2e-7], [0.0])
     assert circuit.pressures[0][0] == pytest.approx(start, rel=1e-9, abs=0.0)
     assert surplus(circuit) == pytest.approx(0.0, abs=4.0 * corner)
 
@@ -105,12 +106,12 @@ def test_a_cavity_that_opens_costs_a_little_of_its_step() -> None:
         tick = (3.0 + 0.37 * k) * 1e-6 / 60.0
         at_first, drawn = float(circuit.state[2]), 0.0
         while circuit.pressures[0][0] > VAPOUR:
-            circuit.advance_held([tick], [0.0])
+            advance(circuit, [tick], [0.0])
             drawn += tick
         left, step = surplus(circuit), tick / circuit._steps
         shares.append(abs(left) / (step * step / c))
         for _ in range(5):
-            circuit.advance_held([tick], [0.0])
+            advance(circuit, [tick], [0.0])
             drawn += tick
         assert surplus(circuit) == pytest.approx(left, abs=1e-9)
         assert at_first - circuit.state[2] == pytest.approx(drawn, rel=1e-12, abs=0.0)
@@ -129,7 +130,7 @@ def test_actuators_have_the_return_pressure_of_their_tick_s_start() -> None:
         circuit.filling.to(rows).run()
         held.append(float(rows['return_pressure'][0]))
         before = circuit.samples[0]['energy']
-        circuit.advance_nodes([0.0], [0.0], [2e-7])
+        advance(circuit, [0.0], [2e-7], [0.0])
         # it pays for what it returns with what it was given at the start
         assert circuit.samples[0]['energy'] - before == pytest.approx(
             -held[-1] * 2e-7, rel=1e-12, abs=1e-12)

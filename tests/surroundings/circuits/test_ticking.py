@@ -6,6 +6,7 @@ from isa_ros.surroundings.circuits.slopes import inflow_slope, inflow_trend
 from isa_ros.surroundings.supply_port import FedNode
 import numpy as np
 import pytest
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of
 from tests.surroundings.circuits.station import driven, LPM, STATION
 
@@ -44,7 +45,7 @@ def test_a_tick_is_that_many_steps_with_the_mean_flows():
     steps = circuit._steps
     circuit_advance(steps, 1e-3 / steps, flows, network.nodes, network.elements, state,
                     np.zeros((WORK_ROWS, len(state))))
-    circuit.advance_held([4e-3 * LPM, 3e-3 * LPM], [2e-3 * LPM, 3e-3 * LPM])
+    advance(circuit, [4e-3 * LPM, 3e-3 * LPM], [2e-3 * LPM, 3e-3 * LPM])
     # A division by the tick and a sum are rounded, which the gas repeats.
     assert circuit.state == pytest.approx(state, rel=1e-9, abs=1e-15)
     assert steps > 10
@@ -62,5 +63,5 @@ def test_a_change_takes_effect_at_once():
     assert circuit.samples['pump_flow'][at] < shown[at] - 0.5 * LPM
     other = moved()
     for each in (circuit, other):
-        each.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(each, [0.0, 0.0], [0.0, 0.0])
     assert abs(circuit.nodes()[0].pressure - other.nodes()[0].pressure) > 1e3

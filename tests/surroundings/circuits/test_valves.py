@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import circuit_of, sheet_of, SIMPLE
 from tests.surroundings.circuits.station import LPM, STATION
 
@@ -10,18 +11,18 @@ def test_the_emergency_stop_dumps_and_shuts() -> None:
     """Without current the pump stands, the dump opens, the block valve keeps what is behind it."""
     circuit = circuit_of(STATION, 'left', 'right')
     for _ in range(100):
-        circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(circuit, [0.0, 0.0], [0.0, 0.0])
     kept = circuit.pressures[1][0]
     circuit.change(sheet_of(STATION, dump={'opened': 1.0}))
     for _ in range(1500):
-        circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(circuit, [0.0, 0.0], [0.0, 0.0])
     assert circuit.pressures[0][0] < 1e6
     assert circuit.pressures[1][0] > 0.9 * kept
     assert circuit.samples[0]['dump_opening'] == pytest.approx(1.0, abs=1e-6)
     assert circuit.samples[0]['pump_flow'] < 0.0      # only its leakage, back to the tank
     circuit.change(sheet_of(STATION))
     for _ in range(1500):
-        circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(circuit, [0.0, 0.0], [0.0, 0.0])
     assert circuit.pressures[0][0] > 15e6
 
 
@@ -31,7 +32,7 @@ def test_the_unloading_valve_goes_to_and_fro() -> None:
     stored, openings = [], []
     row = 1 + list(sheet_of(STATION).by_name).index('spared')
     for _ in range(3000):
-        circuit.advance_held([3.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
+        advance(circuit, [3.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
         stored.append(float(circuit.samples[row + 2]['pressure']))
         openings.append(float(circuit.samples[row]['dump_opening']))
     full = np.array(openings) > 0.99
@@ -50,7 +51,7 @@ def test_faults_of_the_check_valve(fault: str, low: float, high: float) -> None:
     text = STATION.replace('rated_lpm: 60.0}\nstored', f'rated_lpm: 60.0, {fault}}}\nstored')
     circuit = circuit_of(text, 'left', 'right')
     for _ in range(1500):
-        circuit.advance_held([4.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
+        advance(circuit, [4.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
     assert low <= circuit.pressures[0][0] <= high
 
 
@@ -63,14 +64,14 @@ def test_a_check_valve_lets_no_oil_back_unless_it_sticks() -> None:
         circuit = circuit_of(text.replace('leakage_lpm_per_mpa: 0.05', 'leakage_lpm_per_mpa: 2.0'),
                              'left', 'right')
         for _ in range(1000):
-            circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+            advance(circuit, [0.0, 0.0], [0.0, 0.0])
         assert (circuit.pressures[0][0] > 17e6) == is_kept
 
 
 def test_a_stuck_pump_and_a_stuck_valve_stay_as_they_are() -> None:
     circuit = circuit_of(STATION, 'left', 'right')
     for _ in range(200):
-        circuit.advance_held([5.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
+        advance(circuit, [5.0 * LPM * 1e-3, 0.0], [0.0, 0.0])
     row = 1 + list(sheet_of(STATION).by_name).index('dumped')
     stuck = STATION.replace('inlet: stored, outlet: tank, rated', 'stuck: 1, inlet: stored, '
                             'outlet: tank, rated').replace('speed_rpm', 'stuck: 1, speed_rpm')
@@ -79,7 +80,7 @@ def test_a_stuck_pump_and_a_stuck_valve_stay_as_they_are() -> None:
     flow = circuit.state[own]
     circuit.change(sheet_of(stuck, dump={'opened': 1.0}))
     for _ in range(50):
-        circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(circuit, [0.0, 0.0], [0.0, 0.0])
     assert circuit.state[own] == flow > 0.0
     assert circuit.samples[row]['dump_opening'] == 0.0
 
@@ -98,7 +99,7 @@ def test_faults_of_the_relief_valve(fault: str, expected: float) -> None:
         f'lpm_per_mpa: 60.0{fault}}}\n'
     circuit = circuit_of(text, 'main')
     for _ in range(1000):
-        circuit.advance_held([0.0], [0.0])
+        advance(circuit, [0.0], [0.0])
     p = circuit.pressures[0][0] * 1e-6
     if fault == '':
         expected += (15.0 - 0.1 * p) / 60.0
@@ -114,7 +115,7 @@ def test_a_check_valve_opens_at_its_pressure_or_without_its_spring() -> None:
             'kept: {kind: check, inlet: main, outlet: behind, rated_lpm: 6.0, rated_drop_mpa: '
             f'0.4, opens_mpa: 0.5{fault}}}\n', 'behind')
         for _ in range(1000):
-            circuit.advance_held([6.0 * LPM * 1e-3], [0.0])
+            advance(circuit, [6.0 * LPM * 1e-3], [0.0])
         row = 1 + list(sheet_of(SIMPLE).by_name).index('main')
         drops.append(float(circuit.samples[row]['pressure']) - circuit.pressures[0][0])
     # the rated drop is that of a square root; V5 makes it larger by (delta/dP)^2/2, 0.13 %

@@ -12,6 +12,7 @@ from isa_ros.surroundings.circuits.warmth import STEP
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.surroundings.circuits.advanced import advance
 from tests.surroundings.circuits.sheets import circuit_of, MS, sheet_of, SLOPE
 from tests.surroundings.circuits.station import driven, LPM, surplus
 from tests.surroundings.circuits.test_heat import CAPACITY, HOT, HOT_STATION, walther
@@ -64,7 +65,7 @@ def test_it_follows_one_ode_by_scipy(
         x[3] = 0.0
         x = solve_ivp(rates, (0.0, 1e-3), x, args=(drawn,), rtol=1e-8,
                       atol=[1e-14, 1e-12, 1e-9, 1e-6]).y[:, -1]
-        circuit.advance_nodes([drawn * 1e-3], [float(x[3])], [0.5 * drawn * 1e-3])
+        advance(circuit, [drawn * 1e-3], [0.5 * drawn * 1e-3], [float(x[3])])
         assert circuit.samples[0]['oil_temperature'] == pytest.approx(x[2], abs=bound)
         own = circuit._warmth
         assert own is not None and abs(own.oil.celsius - own.oil.taken) <= step
@@ -80,7 +81,7 @@ def test_all_heat_is_stored_or_given_away(text: str) -> None:
     circuit, rng = circuit_of(text, *fed), np.random.default_rng(7)
     if text is HOT:
         for _ in range(500):
-            circuit.advance_held([8.0 * LPM * 1e-3], [3.0 * LPM * 1e-3])
+            advance(circuit, [8.0 * LPM * 1e-3], [3.0 * LPM * 1e-3])
     else:
         driven(circuit, 500, rng)
     whole = circuit.samples[0]
@@ -105,7 +106,7 @@ def test_the_heat_is_that_of_losses_shafts_and_actuators(more: str) -> None:
     text = HOT.replace('leakage_lpm_per_mpa: 0.1', 'leakage_lpm_per_mpa: 0.0') + more
     circuit = circuit_of(text, 'main')
     for _ in range(400):
-        circuit.advance_held([8.0 * LPM * 1e-3], [3.0 * LPM * 1e-3])
+        advance(circuit, [8.0 * LPM * 1e-3], [3.0 * LPM * 1e-3])
     whole = circuit.samples[0]
     shaft = float(whole['pump_energy']) / 0.85
     of_gas = float(row(circuit, text, 'buffer')['relief_energy']) if more else 0.0
@@ -123,7 +124,7 @@ def test_heat_of_actuators_takes_the_place_of_their_energy() -> None:
         Fed('left', SLOPE, rows=(2, 0), heated=(2,)),
         Fed('right', SLOPE, rows=(1, 3), heated=(3,))])
     backs = [back for _, back in plain.pressures]
-    plain.advance_nodes([2e-6, 3e-6], [30.0, 50.0], [1e-6, 1.5e-6])
+    advance(plain, [2e-6, 3e-6], [1e-6, 1.5e-6], [30.0, 50.0])
     replies, answers = np.zeros(4, LOAD_REPLY), np.zeros(4, SUPPLY_REPLY)
     replies['supply_volume'] = 1.5e-6, 1e-6, 0.5e-6, 2e-6
     replies['return_volume'] = 6e-7, 6e-7, 4e-7, 9e-7
@@ -145,7 +146,7 @@ def test_what_leaks_to_the_outside_takes_its_heat_along() -> None:
     text = HOT.replace('oil_volume_l: 0.5}', 'oil_volume_l: 0.5, leakage_lpm_per_mpa: 0.3}')
     circuit = circuit_of(text, 'main')
     for _ in range(300):
-        circuit.advance_held([1e-12], [0.0])
+        advance(circuit, [1e-12], [0.0])
     whole, leak = circuit.samples[0], row(circuit, text, 'main')
     pump = row(circuit, text, 'pump')
     lost = float(leak['relief_energy'])
@@ -165,7 +166,7 @@ def test_a_fouled_cooler_gives_less() -> None:
         text = HOT.replace('coolant_celsius: 12.0', f'coolant_celsius: 12.0{more}')
         circuit = circuit_of(text, 'main')
         for _ in range(20):
-            circuit.advance_held([0.0], [0.0])
+            advance(circuit, [0.0], [0.0])
         given.append(float(row(circuit, text, 'cooler')['heat']))
     assert given[0] > 10.0 and given[2] == 0.0
     assert given[1] == pytest.approx(0.75 * given[0], rel=1e-3)
@@ -202,7 +203,7 @@ def test_oil_that_is_still_cold_keeps_its_steps() -> None:
     circuit = circuit_of(cold, 'left', 'right')
     steps = circuit._steps
     for _ in range(20):
-        circuit.advance_held([0.0, 0.0], [0.0, 0.0])
+        advance(circuit, [0.0, 0.0], [0.0, 0.0])
     assert circuit.samples[0]['oil_temperature'] < -29.0
     mild = sheet_of(
         cold.replace('-30.0}', '31.0}').replace('air_celsius: 17.0', 'air_celsius: 31.0'))
@@ -243,7 +244,7 @@ def test_air_may_change_during_a_run() -> None:
         text = HOT.replace('air_celsius: 17.0', f'air_celsius: {air}')
         circuit.change(sheet_of(text))
         before = float(row(circuit, text, 'tank')['heat'])
-        circuit.advance_held([0.0], [0.0])
+        advance(circuit, [0.0], [0.0])
         held.append(float(row(circuit, text, 'tank')['heat']) - before)
     # 3 W/K over 1 ms of 14 and 51 K
     assert held == [pytest.approx(0.042, rel=0.01), pytest.approx(0.153, rel=0.01)]
