@@ -5,12 +5,10 @@ Code of others that pages contain, unchanged, each with its licence.
 registry states it, and SHA-384 of the files kept here.
 """
 
-import json
 from pathlib import Path
 from typing import NamedTuple
 
 _HERE = Path(__file__).parent
-MANIFEST = _HERE / 'manifest.json'
 
 
 class Vendored(NamedTuple):
@@ -26,9 +24,3 @@ def uplot() -> Vendored:
     own = _HERE / 'uplot'
     return Vendored(*((own / name).read_text(encoding='utf-8') for name in (
         'uPlot.iife.min.js', 'uPlot.min.css', 'LICENSE')))
-
-
-def manifest() -> dict[str, dict[str, object]]:
-    """Return what `manifest.json` has, by package."""
-    found: dict[str, dict[str, object]] = json.loads(MANIFEST.read_text(encoding='utf-8'))
-    return found
