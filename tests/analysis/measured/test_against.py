@@ -213,7 +213,8 @@ def test_a_command_holds_until_the_next_and_the_first_before_it() -> None:
 
 @pytest.mark.parametrize('quantity, value, field, expected', [
     ('position_command', 9.0, 'position', 0.1), ('position_command', -9.0, 'position', 0.0),
-    ('force_command', 1e6, 'effort', None), ('spool_command', -1.0, 'reference', None)])
+    ('force_command', 1e6, 'effort', None), ('spool_command', -1.0, 'reference', None),
+    ('current_command', 2.0, 'reference', None)])
 def test_commands_beyond_the_range_are_limited(
         quantity: str, value: float, field: str, expected: float | None) -> None:
     """As the actuator itself limits them, those within stay."""
