@@ -32,7 +32,7 @@ def loaded_from(library: Path | None) -> Finding:
 
 
 def kept_in(directory: Path | None) -> Finding:
-    """Return the number of kernels in a cache, and their size."""
+    """Return the number of files in a cache, and their size."""
     if directory is None:
         return Finding(
             _GROUP, 'cache', 'no directory that can be written', Verdict.PROBLEM,
@@ -42,4 +42,4 @@ def kept_in(directory: Path | None) -> Finding:
         return Finding(_GROUP, 'cache', f'{directory}, empty', Verdict.NOTE,
                        'the first run compiles its kernels, once')
     return Finding(
-        _GROUP, 'cache', f'{directory}, {len(files)} kernels, {in_megabytes(sum(files))}')
+        _GROUP, 'cache', f'{directory}, {len(files)} files, {in_megabytes(sum(files))}')

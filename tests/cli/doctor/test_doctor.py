@@ -169,7 +169,7 @@ def test_the_kernels_of_a_cache_are_counted(tmp_path: Path) -> None:
     assert kernels.kept_in(tmp_path).found == f'{tmp_path}, empty'
     for name, size in (('a', 1_500_000), ('b', 2_600_000)):
         (tmp_path / name).write_bytes(bytes(size))
-    assert kernels.kept_in(tmp_path).found == f'{tmp_path}, 2 kernels, 4 MB'
+    assert kernels.kept_in(tmp_path).found == f'{tmp_path}, 2 files, 4 MB'
 
 
 def test_the_table_names_a_group_once_and_counts() -> None:
