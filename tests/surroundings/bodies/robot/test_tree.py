@@ -23,10 +23,12 @@ def accelerations(y, force, is_held, records, out):
     """Fill q'' of a state under generalised forces, and solve M x = force."""
     tree = motion.tree_of(records, len(y))
     motion.move(y, tree.forces, is_held, tree)
-    out[1] = force
+    for k in range(len(force)):
+        out[1, k] = force[k]
     motion.let_go(tree.speeds, is_held, out[1])
     solve(tree.speeds, tree.mass, out[1])
-    out[0] = tree.acceleration + out[1]
+    for k in range(len(force)):
+        out[0, k] = tree.acceleration[k] + out[1, k]
 
 
 def evaluated(sheet: RobotSheet, start: RobotStart, y: np.ndarray, force: np.ndarray,
