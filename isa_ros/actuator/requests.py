@@ -80,6 +80,11 @@ def deafness_of(pending: np.record, constants: np.record, reu: np.record) -> str
     if state == INITIALISING and (
             pending.is_enabled if kinds & HAS_ENABLE else reu.status.auto_enable):
         state = ENABLED
+    if kinds & HAS_ENABLE and pending.is_enabled and state == QUICK_STOP and is_held(
+            constants.rules, reu.status):
+        state = ENABLED
+    if kinds & HAS_QUICK_STOP and state == ENABLED:
+        state = QUICK_STOP
     if state != ENABLED:
         return f'the state is {state_name(state)}'
     trips = conditions(int(reu.protection.trips)) if reu.status.state == ENABLED else []

@@ -18,10 +18,10 @@ import tempfile
 from typing import NamedTuple
 
 from isa_ros.core.kept_objects import keep, kept, kept_name, symbols_of
-from isa_ros.core.kernel import entry_of, KernelEntry
+from isa_ros.core.kernel import entry_of, IS_COMPILED, KernelEntry
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import object_of_bitcode, Target
-from isa_ros.errors import RunError
+from isa_ros.errors import ConfigError, RunError
 from isa_ros.export.exported import Called
 from isa_ros.processes.stopping import PARENT_VARIABLE
 
@@ -66,6 +66,8 @@ def objects_of(groups: Iterable[Iterable[Called]], target: Target) -> tuple[byte
 def objects_of_entries(
         groups: Iterable[Mapping[str, KernelEntry]], target: Target) -> tuple[bytes, ...]:
     """Return the object of each group of entries by exported names; as `objects_of`."""
+    if not IS_COMPILED:
+        raise ConfigError('NUMBA_DISABLE_JIT is set, and machine code needs the compiler: unset it')
     with ExitStack() as stack:
         begun = [_Object(entries, target, stack) for entries in groups]
         return tuple(own.code() for own in begun)
@@ -111,8 +113,8 @@ def _lowering(order: BitcodeOrder) -> Iterator['subprocess.Popen[bytes]']:
         asked.seek(0)
         try:
             process = subprocess.Popen(
-                _PROGRAM, env=environment, stdin=asked, stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE)
+                _PROGRAM, env=environment, cwd=_ROOT, stdin=asked, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE)     # elsewhere are modules of the user
         except OSError as error:
             raise RunError('machine code: no process can be started to make it, '
                            f'{error.strerror or error}') from error

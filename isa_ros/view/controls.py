@@ -152,7 +152,7 @@ class Controls:
         command = _command(actuator, setpoint)
         refuse_without_effort(actuator.name, setpoint, actuator.mode)
         told = actuator.admit(command) or f'{actuator.name}: {field} = {value:g}'
-        why = actuator.deafness
+        why = '' if field in GAINS.values() else actuator.deafness     # which keep a gain
         return f'{told}, not followed: {why}' if why else told
 
     def _in_force(self, actuator: SmartActuator) -> list[float | None] | None:

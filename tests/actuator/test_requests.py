@@ -77,6 +77,30 @@ def test_one_that_initialises_will_follow_if_it_is_to_be_enabled(is_wanted):
     assert (actuator.deafness == '') == is_wanted
 
 
+def test_a_stop_that_waits_for_the_next_tick_counts():
+    actuator = protected()
+    ticks(actuator, 5)
+    actuator.accept(request(HAS_QUICK_STOP))
+    assert actuator.deafness == 'the state is quick stop' and not follows(actuator)
+    assert actuator.sample.device_state == QUICK_STOP
+
+
+def test_a_held_stop_is_left_by_the_enabling_that_waits():
+    sheet = override(actuator_sheet('isa_v5'), 'reu.device.quick_stop', 'ramp_and_hold')
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK, sheet=sheet)
+    ticks(actuator, 5)
+    actuator.accept(request(HAS_QUICK_STOP))
+    ticks(actuator, 300)
+    assert actuator.sample.device_state == QUICK_STOP
+    assert actuator.deafness == 'the state is quick stop'
+    actuator.accept(request(HAS_ENABLE, 1))
+    assert actuator.deafness == ''
+    actuator.accept(setpoint(position=0.0601))
+    ticks(actuator, 3)
+    assert actuator.sample.device_state == ENABLED
+    assert actuator._reu.setpoint.position == 0.0601
+
+
 @pytest.mark.parametrize('reaction', ['hold', 'damp'])
 def test_one_that_holds_after_a_lost_setpoint_follows_the_next(reaction):
     """The trip ends with it; of another trip it does not."""

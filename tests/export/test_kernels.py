@@ -268,3 +268,19 @@ def test_an_end_of_the_export_ends_its_process(tmp_path, monkeypatch, number):
         assert time.monotonic() < deadline
         time.sleep(0.01)
     assert not [path for path in (tmp_path / 'cache').rglob('*') if path.is_file()]
+
+
+def test_the_process_takes_no_modules_of_the_folder_it_is_asked_in(tmp_path, monkeypatch):
+    """As a checkout of another version, or a file of the user with the name of a module."""
+    folder = tmp_path / 'own'
+    folder.mkdir()
+    (folder / 'pickle.py').write_text('raise SystemExit("of the user")')
+    monkeypatch.chdir(folder)
+    assert any('share' in own.name for own in symbols(objects_of([GROUP], OWN)[0]))
+
+
+def test_without_the_compiler_no_process_is_started(monkeypatch):
+    monkeypatch.setattr(kernels, 'IS_COMPILED', False)
+    monkeypatch.setattr(subprocess, 'Popen', None)
+    with pytest.raises(ConfigError, match='^NUMBA_DISABLE_JIT is set, and machine code needs'):
+        objects_of([GROUP], OWN)

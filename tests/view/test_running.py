@@ -142,15 +142,18 @@ def test_a_setpoint_that_is_not_followed_is_answered_so(tmp_path):
     """While the device is disabled, and no longer once it is enabled again; so is its event."""
     lived = Lived(tmp_path / 'bag', {
         5: [{'what': 'request', 'of': 'ram', 'name': 'disable'}],
-        10: [setpoint('position', 0.031)],
+        10: [setpoint('position', 0.031), setpoint('stiffness', 54321.0)],
         12: [{'what': 'request', 'of': 'ram', 'name': 'enable'}, setpoint('effort', 70.0)]})
     told = [own['text'] for own in lived.answers]
     assert told[1] == 'ram: position = 0.031, not followed: the state is disabled'
-    assert told[3] == 'ram: effort = 70'
-    assert [own['is_done'] for own in lived.answers] == [True] * 4
+    assert told[2] == 'ram: stiffness = 54321'   # a gain is kept, and in force once enabled
+    assert told[4] == 'ram: effort = 70'
+    assert [own['is_done'] for own in lived.answers] == [True] * 5
     events = [own.what for own in isa_ros.read(lived.bag.path).events if own.kind == 'change']
-    assert events == ['by the page, position = 0.031, not followed: the state is disabled',
-                      'by the page, effort = 70']
+    assert sorted(events) == [
+        'by the page, effort = 70',
+        'by the page, position = 0.031, not followed: the state is disabled',
+        'by the page, stiffness = 54321']
 
 
 def test_a_setpoint_takes_effect_at_the_next_tick_and_is_in_the_bag(tmp_path):

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
 from isa_ros.analysis.measured.closing import (
-    changed, Closed, closed, DELAY, delay_left, free_of, shifted)
+    changed, CLOCK, Closed, closed, DELAY, delay_left, free_of, shifted)
 from isa_ros.analysis.measured.fit import Fit, fit
 from isa_ros.analysis.measured.mapping import load_mapping, MeasurementMapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
@@ -76,9 +76,10 @@ def against(
         raise ConfigError(f'{own.name}: has commands only, nothing to compare a simulation with')
     run = prepared(run, name, measurement)
     time = _time(measurement, duration, run.configuration.step_ns * 1e-9)
-    for line in filter(None, (
-            _what(measurement, time), *_doubts(run, name, measurement, own), measurement.remark,
-            remark(run, name, measurement))):
+    begun(_what(measurement, time))
+    for line in _doubts(run, name, measurement, own, time):
+        begun(line)
+    for line in filter(None, (measurement.remark, remark(run, name, measurement))):
         begun(line)
     simulated = played(run, name, measurement, time)
     fits = _fits(measurement.outputs, simulated)
@@ -91,19 +92,20 @@ def against(
     improved = played(run, name, measurement, time) if found else {}
     moved = {quantity: shifted(signal, values) for quantity, signal in measurement.outputs.items()}
     by_clock = measurement._replace(signals={**measurement.commands, **moved})
-    late = delay_left(run, name, by_clock, time) if found and DELAY not in values else None
+    late = delay_left(run, name, by_clock, time) if (
+        values.keys() - {CLOCK, DELAY} and DELAY not in values) else None
     return Against(
         name, is_rotary, moved, simulated, fits, found, improved, _fits(moved, improved), late)
 
 
 def _doubts(
-        run: Run, name: str, measurement: Measurement, mapping: MeasurementMapping
-        ) -> Iterator[str]:
+        run: Run, name: str, measurement: Measurement, mapping: MeasurementMapping,
+        time: float) -> Iterator[str]:
     """Yield what speaks for a wrong unit before anything is simulated."""
     sheet = run.configuration.actuator(name).sheet
     yield from doubts_of_time(measurement, mapping)
     yield from doubts_of_speed(
-        measurement, ratings_of(plant_record(sheet.plant)[0]).speed,
+        measurement, time, ratings_of(plant_record(sheet.plant)[0]).speed,
         unit_of('velocity', sheet.is_rotary))
 
 

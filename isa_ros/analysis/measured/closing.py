@@ -221,8 +221,9 @@ def shifted(signal: Signal, values: Mapping[str, float]) -> Signal:
 
 def _grid(measurement: Measurement, duration: float) -> Floats:
     """Return the instants of the residuals, (n,), s."""
-    step = max(max(float(np.median(np.diff(own.t))) for own in measurement.outputs.values()),
-               duration / POINTS)
+    steps = [float(np.median(np.diff(own.t))) for own in measurement.outputs.values()
+             if len(own.t) > 1]
+    step = max([*steps, duration / POINTS])
     return np.arange(0.0, duration, step)
 
 

@@ -17,6 +17,7 @@ from isa_ros.text.table import digits
 import numpy as np
 
 _SLOWEST, _FASTEST = 5.0, 2e4   # Hz, of the usual loggers of a hydraulic machine
+_ROUNDED = 1e-6                 # of a step
 _SHORTEST = 0.1                 # s
 _WINDOW = 0.01                  # s, over which a speed is taken: sensors are noisy
 _MOST_OF_TIME = 0.99            # samples beyond the speed of this share may be a sensor's
@@ -32,7 +33,7 @@ def doubts_of_time(measurement: Measurement, mapping: MeasurementMapping) -> Ite
     if len(t) < 2:
         return
     step, span = float(np.median(np.diff(t))), float(t[-1] - t[0])
-    if 1.0 / _FASTEST <= step <= 1.0 / _SLOWEST and span >= _SHORTEST:
+    if _is_usual(step) and span >= _SHORTEST:
         return
     rate = digits(1.0 / step, 3)
     said = f'{measurement.name}: {rate} samples per second for {digits(span, 3)} s'
@@ -45,16 +46,27 @@ def doubts_of_time(measurement: Measurement, mapping: MeasurementMapping) -> Ite
 def _other_time(step: float, scale: float) -> str:
     """Return the units of time by which a step would be a usual one, or that it is another."""
     known = {'s': 1.0, 'ms': 1e-3, 'us': 1e-6}
-    return ' or '.join(name for name, one in known.items() if one != scale and (
-        1.0 / _FASTEST <= step / scale * one <= 1.0 / _SLOWEST)) or 'another unit'
+    return ' or '.join(name for name, one in known.items() if one != scale and _is_usual(
+        step / scale * one)) or 'another unit'
 
 
-def doubts_of_speed(measurement: Measurement, rated: float, unit: str) -> Iterator[str]:
-    """Yield a doubt in the units of position and time: it moves too fast; ``unit`` of speeds."""
+def _is_usual(step: float) -> bool:
+    """Return whether a step of the time, s, is that of a usual logger."""
+    return 1.0 / _FASTEST <= step * (1.0 + _ROUNDED) and step * (1.0 - _ROUNDED) <= 1.0 / _SLOWEST
+
+
+def doubts_of_speed(
+        measurement: Measurement, duration: float, rated: float, unit: str) -> Iterator[str]:
+    """
+    Yield a doubt in the units of position and time: it moves too fast; ``unit`` of speeds.
+
+    Looked at is what is compared, so many s.
+    """
     own = measurement.outputs.get('position')
-    if own is None or own.t[-1] - own.t[0] < 2.0 * _WINDOW:
+    if own is None or min(own.t[-1], duration) - own.t[0] < 2.0 * _WINDOW:
         return
-    moved = np.diff(np.interp(np.arange(own.t[0], own.t[-1], _WINDOW), own.t, own.values))
+    t = np.arange(own.t[0], min(own.t[-1], duration), _WINDOW)
+    moved = np.diff(np.interp(t, own.t, own.values))
     speed = float(np.quantile(np.abs(moved), _MOST_OF_TIME)) / _WINDOW
     if speed > _TOO_FAST * rated:
         yield (f'{measurement.name}: the position moves at {digits(speed, 3)} {unit}, the rated '

@@ -6,14 +6,15 @@ import math
 from typing import Any
 import warnings
 
+from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.setpoint_range import complete, LIMIT, SetpointRange
 from isa_ros.analysis.measured.mapping import PLACE, SLOPE, VELOCITY
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.controller import Setpoint
-from isa_ros.core.device import REFERENCES
+from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
@@ -101,11 +102,22 @@ def prepared(run: Run, name: str, measurement: Measurement) -> Run:
     mode = QUANTITIES[commands[0]].mode
     if not is_motion:
         changes[f'actuators.{name}.mode'] = mode
+    elif 'force_command' not in commands:
+        _refuse_mode(measurement.name, own)
     if 'position' in measurement.outputs and own.load is not None:
         unit, scale = ('deg', math.radians(1.0)) if own.sheet.is_rotary else ('mm', MILLI)
         changes[f'actuators.{name}.initial_position_{unit}'] = float(
             measurement.outputs['position'].values[0]) / scale
     return run.replace(changes)
+
+
+def _refuse_mode(measured: str, own: ActuatorConfig) -> None:
+    """Refuse an actuator that begins in a mode that does not use a position."""
+    mode = start_mode(own.name, own.mode, own.sheet.reu)
+    if mode not in (POSITION, IMPEDANCE):
+        raise ConfigError(
+            f'{measured}: has {PLACE}, which {own.name} does not use in mode {MODES[mode]}; set '
+            f'actuators.{own.name}.mode to position or impedance, or map force_command too')
 
 
 def remark(run: Run, name: str, measurement: Measurement) -> str:

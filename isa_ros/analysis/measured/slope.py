@@ -18,6 +18,8 @@ Places = NDArray[np.intp]
 
 _LONGEST_HOLD = 0.11    # s, of 10 Hz: what changes more rarely is a row of steps without slope
 _LEAST_CHANGES = 10     # fewer do not show a rate
+_OFTEN = 0.05           # of the times between two changes: so many may be shorter than a hold
+_SHORT = 0.75           # of a hold
 
 
 class Slope(NamedTuple):
@@ -53,11 +55,14 @@ def _held(changes: Places) -> int:
     """
     Return for how many samples a value is held while it changes, by the first samples of values.
 
-    It is a median, because pauses are few among the times between two changes.
+    It is a median, because pauses are few among the times between two changes. What often changes
+    sooner is not held: it is rounded, and changes the sooner the faster it moves.
     """
     if len(changes) < _LEAST_CHANGES:
         return 1
-    return round(float(np.median(np.diff(changes))))
+    times = np.diff(changes)
+    n_held = round(float(np.median(times)))
+    return n_held if float(np.quantile(times, _OFTEN)) >= _SHORT * n_held else 1
 
 
 def _made(changes: Places, n_held: int, n: int) -> Places:
@@ -68,7 +73,7 @@ def _made(changes: Places, n_held: int, n: int) -> Places:
     and may be before it.
     """
     first = np.arange(changes[0], -n_held, -n_held)[::-1]
-    later = [np.arange(change, before + 0.5 * n_held, -n_held)[::-1]
+    later = [np.arange(change, min(before + 0.5 * n_held, change - 0.5), -n_held)[::-1]
              for before, change in zip(changes[:-1], changes[1:])]
     return np.concatenate([first, *later, np.arange(changes[-1] + n_held, n, n_held)]).astype(
         np.intp)

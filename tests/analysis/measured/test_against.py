@@ -244,6 +244,32 @@ def test_a_command_of_a_mode_is_given_in_that_mode(
     assert np.abs(force[50:100]).mean() > 300.0    # 900 N in all, less what moves 50 kg
 
 
+@pytest.mark.parametrize('mode', ['force', 'spool', 'current'])
+def test_a_position_that_the_mode_does_not_use_is_refused(
+        press: tuple[Path, Path], mode: str) -> None:
+    """Otherwise it would be simulated without a force, and parameters found for that."""
+    run = isa_ros.load('rig_linear', changes={'actuators.ram.mode': mode})
+    with pytest.raises(ConfigError) as refused:
+        against(*press, run, [NONE])
+    assert str(refused.value) == (
+        f'press.csv: has position_command, which ram does not use in mode {mode}; set '
+        'actuators.ram.mode to position or impedance, or map force_command too')
+
+
+def test_what_is_told_does_not_wait_for_the_rest(tmp_path: Path) -> None:
+    """How much there is and a doubt in its time are said of a log in us that is mapped as s."""
+    path, mapping = measured(tmp_path, 0.5, {}, noise=0.0, clock_ppm=0.0)
+    lines = path.read_text().splitlines()
+    head = next(k for k, line in enumerate(lines) if line.startswith('t'))
+    path.write_text('\n'.join([*lines[:head + 1], *(
+        f'{float(t) * 1e3:g},{rest}' for t, _, rest in (
+            line.partition(',') for line in lines[head + 1:]))]))
+    mapping.write_text(mapping.read_text().replace('unit: ms', 'unit: s'))
+    told: list[str] = []
+    against(path, mapping, isa_ros.load('rig_linear'), [NONE], 0.1, begun=told.append)
+    assert 'is its time in us?' in told[1]
+
+
 @pytest.mark.parametrize('signals, expected', [
     ('position: {column: pos, unit: mm}', 'press.csv: has no command, so there is nothing to sim'),
     ('position_command: {column: cmd, unit: mm}', 'has commands only, nothing to compare'),

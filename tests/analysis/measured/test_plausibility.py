@@ -60,7 +60,7 @@ def test_a_speed_far_beyond_the_rated_one_is_doubted(speed: float, expected: str
     t = np.arange(4000) * 1e-3
     x = speed / 4.0 * np.sin(4.0 * t) + 5e-4 * (-1.0) ** np.arange(4000)
     x[::2000] += 1.0
-    found = [*doubts_of_speed(over(t, x), 1.0, 'm/s')]
+    found = [*doubts_of_speed(over(t, x), 9.0, 1.0, 'm/s')]
     assert bool(found) == bool(expected)
     assert not found or found == [
         'press.csv: the position moves at 3.1 m/s, the rated speed is 1 m/s: are the units of '
@@ -69,9 +69,26 @@ def test_a_speed_far_beyond_the_rated_one_is_doubted(speed: float, expected: str
 
 def test_without_a_position_there_is_no_speed() -> None:
     t = np.arange(4000) * 1e-3
-    assert not [*doubts_of_speed(Measurement('m', {'force': Signal(t, 9.0 * t)}), 1.0, 'm/s')]
-    assert not [*doubts_of_speed(over(t[:15], 9.0 * t[:15]), 1.0, 'm/s')]
-    assert [*doubts_of_speed(over(t[:30], 9.0 * t[:30]), 1.0, 'm/s')]
+    assert not [*doubts_of_speed(Measurement('m', {'force': Signal(t, 9.0 * t)}), 9.0, 1.0, 'm/s')]
+    assert not [*doubts_of_speed(over(t[:15], 9.0 * t[:15]), 9.0, 1.0, 'm/s')]
+    assert [*doubts_of_speed(over(t[:30], 9.0 * t[:30]), 9.0, 1.0, 'm/s')]
+    assert not [*doubts_of_speed(over(t[:30], 9.0 * t[:30]), 0.015, 1.0, 'm/s')]
+
+
+def test_of_a_speed_only_what_is_compared_is_looked_at() -> None:
+    """A time in us that is mapped as s lasts for weeks: the 10 ms of them fill no memory."""
+    t = np.array([0.0, 1.0, 2e9])
+    assert not [*doubts_of_speed(over(t, 0.1 * t), 600.0, 1.0, 'm/s')]
+    assert [*doubts_of_speed(over(t, 5.0 * t), 600.0, 1.0, 'm/s')]
+
+
+@pytest.mark.parametrize('rate', [5.0, 2e4])
+def test_a_logger_at_a_usual_rate_is_not_doubted(rate: float) -> None:
+    """Its steps are some roundings off."""
+    t = np.arange(4000) / rate
+    for given in (mapping(rate=rate), mapping()):
+        assert not [*doubts_of_time(over(t, t), given)]
+        assert [*doubts_of_time(over(t * (1.2 if rate == 5.0 else 0.8), t), given)]
 
 
 @pytest.mark.parametrize(('quantity', 'unit', 'gain', 'left', 'expected'), [

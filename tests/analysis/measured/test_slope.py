@@ -105,3 +105,26 @@ def test_a_held_command_is_told(tmp_path: Path, n: int) -> None:
         'position_command is held for 20 samples, 20 ms: velocity_command is its slope from '
         'change to change, held as long; map the commanded velocity itself if it was logged'))
     assert found.signals['velocity_command'].values.max() == pytest.approx(0.02 * np.pi, rel=0.01)
+
+
+@pytest.mark.parametrize(('step', 'rate', 'fast'), [
+    (1e-5, 1e3, 0.05), (5e-5, 2e3, 0.1), (2e-5, 1e3, 0.03)])
+def test_a_command_that_is_rounded_is_not_held(step: float, rate: float, fast: float) -> None:
+    """It changes the sooner the faster it moves: a rapid stroke keeps its speed."""
+    t = np.arange(round(4.0 * rate)) / rate
+    place = fast * np.clip(t - 0.5, 0.0, 0.4) + 0.1 * fast * np.clip(t - 0.9, 0.0, None)
+    found = slope_of(Signal(t, step * np.round(place / step)))
+    assert found.n_held == 1
+    within = (found.signal.t > 0.55) & (found.signal.t < 0.85)
+    assert found.signal.values[within].mean() == pytest.approx(fast, rel=0.02)
+
+
+def test_a_held_command_keeps_a_change_that_comes_early() -> None:
+    """One of many, as of a program that was late once: its value is among those of the slope."""
+    values = held(20).values.copy()
+    values[909:920] = values[920]     # at 0.909 s instead of 0.92
+    found = slope_of(Signal(T, values))
+    assert found.n_held == 20
+    assert {0.9, 0.909} <= {round(float(t), 3) for t in found.signal.t}
+    values[901:920] = values[920]
+    assert {0.9, 0.901} <= {round(float(t), 3) for t in slope_of(Signal(T, values)).signal.t}
