@@ -67,7 +67,7 @@ def objects_of_entries(
         groups: Iterable[Mapping[str, KernelEntry]], target: Target) -> tuple[bytes, ...]:
     """Return the object of each group of entries by exported names; as `objects_of`."""
     if not IS_COMPILED:
-        raise ConfigError('NUMBA_DISABLE_JIT is set, and machine code needs the compiler: unset it')
+        raise ConfigError('NUMBA_DISABLE_JIT is set, machine code needs the compiler: unset it')
     with ExitStack() as stack:
         begun = [_Object(entries, target, stack) for entries in groups]
         return tuple(own.code() for own in begun)

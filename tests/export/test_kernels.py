@@ -282,5 +282,5 @@ def test_the_process_takes_no_modules_of_the_folder_it_is_asked_in(tmp_path, mon
 def test_without_the_compiler_no_process_is_started(monkeypatch):
     monkeypatch.setattr(kernels, 'IS_COMPILED', False)
     monkeypatch.setattr(subprocess, 'Popen', None)
-    with pytest.raises(ConfigError, match='^NUMBA_DISABLE_JIT is set, and machine code needs'):
+    with pytest.raises(ConfigError, match='^NUMBA_DISABLE_JIT is set, machine code needs'):
         objects_of([GROUP], OWN)
