@@ -5,13 +5,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.ratings import ratings_of
+from isa_ros.actuator.setpoint_range import setpoint_bounds
 from isa_ros.analysis.measured.closing import (
-    changed, CLOCK, Closed, closed, DELAY, delay_left, free_of, shifted)
+    changed, CLOCK, Closed, closed, DELAY, delay_left, free_of, shifted, SHORTEST_S)
 from isa_ros.analysis.measured.fit import Fit, fit
 from isa_ros.analysis.measured.mapping import load_mapping, MeasurementMapping
 from isa_ros.analysis.measured.measurement import Measurement, read_measurement
 from isa_ros.analysis.measured.plausibility import (
-    doubts_of_fits, doubts_of_speed, doubts_of_time)
+    doubts_of_commands, doubts_of_fits, doubts_of_speed, doubts_of_time)
 from isa_ros.analysis.measured.playback import LONGEST_S, played, prepared, remark
 from isa_ros.analysis.measured.quantities import QUANTITIES
 from isa_ros.analysis.signals.signals import Signal
@@ -86,6 +87,9 @@ def against(
     for line in doubts_of_fits(fits, own, is_rotary):
         begun(line)
     keys = [] if list(free) == [NONE] else free_of(run, name, free)
+    if keys and time < SHORTEST_S:
+        begun(f'{measurement.name}: {digits(time, 4)} s are too short for intervals, which need '
+              f'{SHORTEST_S:g} s or more')
     found = closed(run, name, measurement, keys, time, progress) if keys else []
     values = {each.free.key: each.value for each in found}
     run = changed(run, name, values)
@@ -104,6 +108,7 @@ def _doubts(
     """Yield what speaks for a wrong unit before anything is simulated."""
     sheet = run.configuration.actuator(name).sheet
     yield from doubts_of_time(measurement, mapping)
+    yield from doubts_of_commands(measurement, setpoint_bounds(sheet))
     yield from doubts_of_speed(
         measurement, time, ratings_of(plant_record(sheet.plant)[0]).speed,
         unit_of('velocity', sheet.is_rotary))

@@ -36,6 +36,8 @@ Of a log that is 1 ms late they would make up for its delay; free, it costs no r
 
 REACH = 10.0            # a parameter is searched between a tenth and ten times its value
 CORRELATION = 0.4       # s, as for `isa identify`
+SHORTEST_S = 3.0        # s: some eight times as long
+"""Of a measurement from which intervals can be found."""
 WIDEST = 0.5            # half of an interval over the estimate, beyond which it is not determined
 LEAST_LATE_MS = 0.1     # a tenth of a tick; without a delay 0.03 ms were left
 POINTS = 2000           # samples of a signal among the residuals, at most

@@ -8,8 +8,9 @@ its configuration.
 from collections.abc import Iterator, Mapping
 import math
 
+from isa_ros.actuator.setpoint_range import Bounds
 from isa_ros.analysis.measured.fit import Fit
-from isa_ros.analysis.measured.mapping import MeasurementMapping
+from isa_ros.analysis.measured.mapping import MeasurementMapping, PLACE
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES, units_of
 from isa_ros.core.units import of_coordinate
@@ -24,6 +25,8 @@ _MOST_OF_TIME = 0.99            # samples beyond the speed of this share may be 
 _TOO_FAST = 3.0                 # rated speeds
 _FAR = 7.0                      # gain, or its inverse: MPa and bar are 10 apart, bar and psi 14.5
 _ALIKE = 1.5                    # left over gain, up to which courses are alike: r >= 0.55
+_MOSTLY = 0.5                   # of a command's samples
+_FARTHER = 30.0                 # times as far as commanded
 _NEAR = 3.0                     # gain over the ratio of two units, or its inverse
 
 
@@ -71,6 +74,26 @@ def doubts_of_speed(
     if speed > _TOO_FAST * rated:
         yield (f'{measurement.name}: the position moves at {digits(speed, 3)} {unit}, the rated '
                f'speed is {digits(rated, 3)} {unit}: are the units of position and time right?')
+
+
+def doubts_of_commands(
+        measurement: Measurement, bounds: Mapping[str, Bounds]) -> Iterator[str]:
+    """Yield a doubt in the unit of each command that is mostly beyond its range, or of another."""
+    for name, own in measurement.commands.items():
+        range_ = bounds.get(QUANTITIES[name].setpoint)
+        if range_ is None:
+            continue
+        beyond = float(np.mean((own.values < range_.low) | (own.values > range_.high)))
+        if beyond > _MOSTLY:
+            yield (f'{measurement.name}: {digits(100.0 * beyond, 3)} % of {name} are beyond '
+                   f'{range_.low:g} to {range_.high:g} {range_.unit}, {range_.what}: is its unit '
+                   'right?')
+    place, command = measurement.outputs.get('position'), measurement.commands.get(PLACE)
+    if place is not None and command is not None:
+        moved, wanted = (float(np.ptp(own.values)) for own in (place, command))
+        if moved > _FARTHER * wanted > 0.0:
+            yield (f'{measurement.name}: the position moves {digits(moved / wanted, 3)} times as '
+                   f'far as {PLACE}: are both units right?')
 
 
 def doubts_of_fits(

@@ -7,7 +7,7 @@ from typing import Any
 import warnings
 
 from isa_ros.actuator.requests import start_mode
-from isa_ros.actuator.setpoint_range import complete, LIMIT, SetpointRange
+from isa_ros.actuator.setpoint_range import complete, LIMIT, positions, SetpointRange
 from isa_ros.analysis.measured.mapping import PLACE, SLOPE, VELOCITY
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.quantities import QUANTITIES
@@ -105,10 +105,21 @@ def prepared(run: Run, name: str, measurement: Measurement) -> Run:
     elif 'force_command' not in commands:
         _refuse_mode(measurement.name, own)
     if 'position' in measurement.outputs and own.load is not None:
+        _refuse_start(measurement, own)
         unit, scale = ('deg', math.radians(1.0)) if own.sheet.is_rotary else ('mm', MILLI)
         changes[f'actuators.{name}.initial_position_{unit}'] = float(
             measurement.outputs['position'].values[0]) / scale
     return run.replace(changes)
+
+
+def _refuse_start(measurement: Measurement, own: ActuatorConfig) -> None:
+    """Refuse a measurement whose first position is one that the actuator cannot have."""
+    first, within = float(measurement.outputs['position'].values[0]), positions(own.sheet)
+    if not within.low <= first <= within.high:
+        raise ConfigError(
+            f'{measurement.name}: position begins at {first:g} {within.unit}, must be within '
+            f'{within.low:g} to {within.high:g} {within.unit}, {within.what} of {own.name}: are '
+            'its unit, sign and offset in the mapping right?')
 
 
 def _refuse_mode(measured: str, own: ActuatorConfig) -> None:

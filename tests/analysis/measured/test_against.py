@@ -6,16 +6,13 @@ from pathlib import Path
 import warnings
 
 import isa_ros
-from isa_ros.actuator.setpoint_range import LIMIT, SetpointRange
 from isa_ros.analysis.measured.against import against, as_text, as_tree, fit_cells, NONE
 from isa_ros.analysis.measured.closing import free_of
 from isa_ros.analysis.measured.fit import Fit
 from isa_ros.analysis.measured.mapping import load_mapping
-from isa_ros.analysis.measured.measurement import Measurement, read_measurement
-from isa_ros.analysis.measured.playback import playback, played, prepared, remark
-from isa_ros.analysis.signals.signals import Signal
+from isa_ros.analysis.measured.measurement import read_measurement
+from isa_ros.analysis.measured.playback import played, prepared
 from isa_ros.cli.main import main
-from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -156,32 +153,6 @@ def test_the_slope_of_the_position_moves_the_damping_along(tmp_path: Path) -> No
     assert abs(after.delay) < 1e-4 and after.nrmse < 2e-3
 
 
-@pytest.mark.parametrize('commands, changes, expected', [
-    (('position_command', 'velocity_command'), {}, ''), (('force_command',), {}, ''),
-    (('position_command', 'force_command'), {}, '40 ms'),
-    (('position_command',), {'damping': 0.0}, ''),
-    (('position_command',), {'stiffness': 0.0}, ''),
-    (('position_command',), {'damping': 500.0}, 'damping over stiffness, 5 ms; map it, or add')])
-def test_what_makes_a_simulation_late_is_told(
-        commands: tuple[str, ...], changes: dict[str, float], expected: str) -> None:
-    run = isa_ros.load('rig_linear', changes={
-        f'actuators.ram.parameters.reu.position.{key}': value for key, value in changes.items()})
-    signal = Signal(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
-    found = remark(run, 'ram', Measurement('press.csv', dict.fromkeys(commands, signal)))
-    assert expected in found and bool(found) == bool(expected)
-
-
-def test_a_position_loop_without_velocity_lacks_its_feed_forward() -> None:
-    signal = Signal(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
-    own = Measurement('press.csv', {'position_command': signal})
-    run = isa_ros.load('rig_rotary_position')
-    name, = run.actuators
-    key = f'actuators.{name}.parameters.reu.position.kv'
-    assert remark(run.replace({key: 0.0}), name, own) == ''
-    assert 'the feed-forward kv of the position loop has nothing' in remark(
-        run.replace({key: 1e-3}), name, own)
-
-
 def test_the_run_begins_as_the_measurement_and_follows_its_command(
         press: tuple[Path, Path], tmp_path: Path) -> None:
     path, mapping = press
@@ -195,40 +166,6 @@ def test_the_run_begins_as_the_measurement_and_follows_its_command(
         warnings.simplefilter('error')
         simulated = played(run, 'ram', own, 0.2)['position']
     assert simulated.values[-1] > 0.05 and len(simulated.t) == 201
-
-
-def test_a_command_holds_until_the_next_and_the_first_before_it() -> None:
-    """At t = 0 there is none: the machine stands at what was measured first."""
-    run = isa_ros.load('rig_linear').configuration
-    commands = {'position_command': Signal(np.array([0.5, 0.6]), np.array([0.01, 0.02]))}
-    found = playback(run, 'ram', commands, 1000)
-    assert [found.next_command(tick) for tick in (0, 1, 7)] == [1, 1, 7]
-    rows = np.zeros((1000, 1), COMMAND)
-    for tick, row in enumerate(rows):
-        found.commands(tick, row)
-    assert not rows['kinds'][0].any() and (rows['kinds'][1:] == HAS_SETPOINT).all()
-    assert set(rows['position'][1:600, 0]) == {0.01} and set(rows['position'][600:, 0]) == {0.02}
-    assert not rows['effort'].any() and np.isnan(rows['stiffness'][1:]).all()
-
-
-@pytest.mark.parametrize('quantity, value, field, expected', [
-    ('position_command', 9.0, 'position', 0.1), ('position_command', -9.0, 'position', 0.0),
-    ('force_command', 1e6, 'effort', None), ('spool_command', -1.0, 'reference', None),
-    ('current_command', 2.0, 'reference', None)])
-def test_commands_beyond_the_range_are_limited(
-        quantity: str, value: float, field: str, expected: float | None) -> None:
-    """As the actuator itself limits them, those within stay."""
-    run = isa_ros.load('rig_linear').configuration
-    values = np.array([1e-6, value])
-    found = playback(run, 'ram', {quantity: Signal(np.array([0.0, 0.5]), values)}, 600).received
-    own = SetpointRange('ram', run.actuator('ram').sheet, LIMIT)
-    row = found[550].copy()
-    row[field] = value
-    assert own.admit(row).startswith('ram: setpoint ')
-    assert found[field][550] == row[field] != value and found[field][400] == 1e-6
-    assert expected in (None, row[field])
-    assert found['position'][400] == (1e-6 if field == 'position' else
-                                      0.0 if field == 'reference' else 0.05)
 
 
 def test_a_command_of_a_mode_is_given_in_that_mode(
@@ -254,6 +191,17 @@ def test_a_position_that_the_mode_does_not_use_is_refused(
     assert str(refused.value) == (
         f'press.csv: has position_command, which ram does not use in mode {mode}; set '
         'actuators.ram.mode to position or impedance, or map force_command too')
+
+
+def test_a_short_measurement_is_said_to_have_no_intervals(
+        press: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before the search, and only where there is one."""
+    monkeypatch.setattr('isa_ros.analysis.measured.against.closed', lambda *given: [])
+    told: list[str] = []
+    for free, duration in (([NONE], 0.3), (['load.inertia'], 3.0), (['load.inertia'], 0.3)):
+        assert not [line for line in told if 'too short' in line]
+        against(*press, isa_ros.load('rig_linear'), free, duration, begun=told.append)
+    assert 'press.csv: 0.3 s are too short for intervals, which need 3 s or more' in told
 
 
 def test_what_is_told_does_not_wait_for_the_rest(tmp_path: Path) -> None:

@@ -3,13 +3,14 @@
 from pathlib import Path
 
 import isa_ros
+from isa_ros.actuator.setpoint_range import Bounds
 from isa_ros.analysis.measured.against import against, NONE
 from isa_ros.analysis.measured.fit import Fit
 from isa_ros.analysis.measured.mapping import (
     MappedSignal, MeasurementMapping, SignalSource)
 from isa_ros.analysis.measured.measurement import Measurement
 from isa_ros.analysis.measured.plausibility import (
-    doubts_of_fits, doubts_of_speed, doubts_of_time)
+    doubts_of_commands, doubts_of_fits, doubts_of_speed, doubts_of_time)
 from isa_ros.analysis.signals.signals import Signal
 import numpy as np
 import pytest
@@ -133,3 +134,31 @@ def test_a_wrong_unit_is_told_before_the_search(
     against(path, place, isa_ros.load('rig_linear'), [NONE], begun=told.append)
     assert told[0].startswith('press.csv: 1001 samples') and bool(told[1:]) == bool(expected)
     assert any(expected in line for line in told)
+
+
+@pytest.mark.parametrize(('share', 'field', 'expected'), [
+    (0.4, 'position', False), (0.6, 'position', True), (1.0, 'effort', False)])
+def test_a_command_that_is_mostly_beyond_its_range_is_doubted(
+        share: float, field: str, expected: bool) -> None:
+    """As one in mm that is mapped as m; a press may be commanded against its stop."""
+    t = np.arange(100) * 1e-2
+    values = np.where(np.arange(100) < 100 * share, 50.0, 0.05)
+    for sign in (1.0, -1.0):
+        found = [*doubts_of_commands(
+            Measurement('m', {'position_command': Signal(t, sign * values)}),
+            {field: Bounds(-0.1, 0.1, 'm', 'the stroke')})]
+        assert bool(found) == expected
+    assert not expected or found == [
+        'm: 60 % of position_command are beyond -0.1 to 0.1 m, the stroke: is its unit right?']
+
+
+@pytest.mark.parametrize(('scale', 'expected'), [
+    (1.0, ''), (1 / 29, ''), (1e-3, '1000'), (0.0, '')])
+def test_a_command_that_hardly_moves_is_doubted(scale: float, expected: str) -> None:
+    """As one in mm that is mapped as um; one at rest is not: the load may be pushed."""
+    t = np.arange(100) * 1e-2
+    x = 0.02 * np.sin(t)
+    found = [*doubts_of_commands(Measurement('m', {
+        'position': Signal(t, x), 'position_command': Signal(t, scale * x)}), {})]
+    assert found == ([f'm: the position moves {expected} times as far as position_command: are '
+                      'both units right?'] if expected else [])
