@@ -18,6 +18,7 @@ from typing import NamedTuple
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import acos, atan2, cos, sin
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.remembered import remembered
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record, LegSheet
@@ -153,6 +154,7 @@ class TrottingLeg:
         self._body = body_record(sheet.body)[0]
         self._thigh, self._calf = sheet.body.thigh.length_m, sheet.body.calf.length_m
         self._refuse_reach(sheet)
+        self._last: tuple[float, Joints] | None = None
 
     def _refuse_reach(self, sheet: LegSheet) -> None:
         cause = (f'forward_speed = {self._trot.forward_speed:g} m/s at step_frequency_hz = '
@@ -173,6 +175,12 @@ class TrottingLeg:
         return leg_angles(foot.x, foot.z, self._thigh, self._calf)
 
     def at(self, stride: float) -> Joints:
+        """Return the joints, those of the last call again: each joint's motion asks for its own."""
+        if self._last is None or stride != self._last[0]:
+            self._last = stride, self._joints(stride)
+        return self._last[1]
+
+    def _joints(self, stride: float) -> Joints:
         """
         Return the joints: speeds from J q' = v, torques M q'' + h - J^T f  (G6).
 
@@ -202,3 +210,9 @@ class TrottingLeg:
             - terms.j_z_hfe * foot.load,
             terms.m_hfe_kfe * a_hfe + terms.m_kfe_kfe * a_kfe + terms.h_kfe
             - terms.j_z_kfe * foot.load))
+
+
+@remembered
+def trotting_leg(trot: TrotParameters, sheet: LegSheet) -> TrottingLeg:
+    """Return the leg of a trot, the same one for the motions of all its joints; raises as it."""
+    return TrottingLeg(trot, sheet)

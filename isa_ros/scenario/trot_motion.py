@@ -6,7 +6,7 @@ trot. On its own load it moves about its setpoint's position: a rotary actuator 
 the joint itself, a linear one through the linkage of the joint. Equations G1 to G7.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 from isa_ros.config.models.catalogue import gait_section, leg_section
@@ -18,7 +18,8 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, TrotParameters, TrottingLeg
+from isa_ros.scenario.trot import (
+    CHECKED_INSTANTS, smooth_step, TrotParameters, trotting_leg, TrottingLeg)
 from isa_ros.scenario.waveforms import Excursion
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
@@ -56,7 +57,8 @@ class GaitMotion:
 
     def __post_init__(self) -> None:
         """Prepare the leg; raises as `TrottingLeg`."""
-        object.__setattr__(self, '_leg', TrottingLeg(self.gait, self.sheet))
+        trot = TrotParameters(**{f.name: getattr(self.gait, f.name) for f in fields(TrotParameters)})
+        object.__setattr__(self, '_leg', trotting_leg(trot, self.sheet))
         object.__setattr__(self, '_linkage', linkage_record(getattr(self.sheet, self.gait.joint)))
 
     def _joint(self, stride: float) -> tuple[float, float, float]:

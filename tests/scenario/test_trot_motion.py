@@ -9,6 +9,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import load_scenario
+from isa_ros.scenario.trot import TrottingLeg
 from isa_ros.scenario.trot_motion import GaitMotion, read_gait
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.surroundings.linkage_sheet import linkage_record
@@ -27,6 +28,22 @@ def of(run: RunConfig, name: str, **values: float | str) -> GaitMotion:
     """Return the gait of an actuator at its start position."""
     actuator = run.actuator(name)
     return read_gait(dict(values), PLACE, actuator, run.leg, actuator.initial_position)
+
+
+def test_the_joints_of_a_leg_share_it_and_compute_each_instant_once(
+        leg: RunConfig, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as have its trot: another step height is another leg."""
+    haa, hfe, kfe = (of(leg, name, joint=name) for name in ('haa', 'hfe', 'kfe'))
+    other = of(leg, 'kfe', joint='kfe', step_height=0.05)
+    assert haa._leg is hfe._leg is kfe._leg is not other._leg
+    computed: list[float] = []
+    own = TrottingLeg._joints
+    monkeypatch.setattr(TrottingLeg, '_joints', lambda found, stride: (
+        computed.append(stride), own(found, stride))[1])
+    for t_ns in (7 * MS, 8 * MS, 7 * MS):
+        for motion in (haa, hfe, kfe):
+            motion.at(t_ns)
+    assert len(computed) == 3 and computed[0] == computed[2] != computed[1]
 
 
 def test_on_the_rig_the_rotor_moves_about_its_setpoint(rotary: RunConfig) -> None:
