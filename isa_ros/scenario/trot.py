@@ -175,7 +175,7 @@ class TrottingLeg:
         return leg_angles(foot.x, foot.z, self._thigh, self._calf)
 
     def at(self, stride: float) -> Joints:
-        """Return the joints, those of the last call again: each joint's motion asks for its own."""
+        """Return the joints, once computed for all whose motions ask at the same stride."""
         if self._last is None or stride != self._last[0]:
             self._last = stride, self._joints(stride)
         return self._last[1]

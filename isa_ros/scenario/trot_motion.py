@@ -57,7 +57,8 @@ class GaitMotion:
 
     def __post_init__(self) -> None:
         """Prepare the leg; raises as `TrottingLeg`."""
-        trot = TrotParameters(**{f.name: getattr(self.gait, f.name) for f in fields(TrotParameters)})
+        trot = TrotParameters(
+            **{f.name: getattr(self.gait, f.name) for f in fields(TrotParameters)})
         object.__setattr__(self, '_leg', trotting_leg(trot, self.sheet))
         object.__setattr__(self, '_linkage', linkage_record(getattr(self.sheet, self.gait.joint)))
 
