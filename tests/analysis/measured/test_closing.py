@@ -143,3 +143,21 @@ def test_a_delay_that_is_left_is_found_by_one_run(
     found = delay_left({}, 'ram', late(1e-3 * delay_ms), 3.0)
     assert len(swing) == 1 and bool(found) is is_late
     assert not found or found.value == pytest.approx(delay_ms, rel=0.01)
+
+
+def test_an_output_of_one_sample_has_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As of a bag whose command is longer: the others', or the most residuals, say how often."""
+    seen = []
+
+    def searched(residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, box: object,
+                 lags: int) -> Minimum:
+        seen.append(residuals(start).shape)
+        return Minimum(start, start, 0.0)
+    monkeypatch.setattr(closing, 'searched', searched)
+    monkeypatch.setattr(closing, 'changed', lambda run, name, values: values)
+    one = Signal(np.zeros(1), np.zeros(1))
+    monkeypatch.setattr(closing, 'played', lambda run, *given: {'force': one, 'position': one})
+    several = Signal(T, SWING)
+    for other in (one, several):
+        closed(None, 'ram', Measurement('m', {'force': one, 'position': other}), [free()], 2.0)
+    assert seen == [(2, closing.POINTS), (2, 200)]

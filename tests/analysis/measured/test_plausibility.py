@@ -83,6 +83,13 @@ def test_of_a_speed_only_what_is_compared_is_looked_at() -> None:
     assert [*doubts_of_speed(over(t, 5.0 * t), 600.0, 1.0, 'm/s')]
 
 
+def test_a_speed_after_what_is_compared_is_not_doubted() -> None:
+    t = np.arange(2000) * 1e-3
+    own = over(t, 5.0 * np.maximum(t - 0.5, 0.0))
+    assert not [*doubts_of_speed(own, 0.5, 1.0, 'm/s')]
+    assert [*doubts_of_speed(own, 1.0, 1.0, 'm/s')]
+
+
 @pytest.mark.parametrize('rate', [5.0, 2e4])
 def test_a_logger_at_a_usual_rate_is_not_doubted(rate: float) -> None:
     """Its steps are some roundings off."""
