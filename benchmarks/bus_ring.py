@@ -1,7 +1,7 @@
 """Measured cycles of an EtherCAT ring, each in a network namespace of its own."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import cache
 import json
 import os
@@ -13,6 +13,7 @@ import tempfile
 from typing import NamedTuple
 
 from isa_ros.bench.child import environment, last_line
+from isa_ros.core.frozen import frozen
 from isa_ros.fieldbus.request import FRAME, REAL_TIME
 
 FLOOR = 'floor'
@@ -29,7 +30,7 @@ _OWN_USERS = ('--user', '--map-root-user')
 TIMEOUT_S = 300.0
 
 
-@dataclass(frozen=True)
+@frozen
 class MeasuredRing:
     """A ring to measure."""
 

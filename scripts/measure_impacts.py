@@ -11,11 +11,11 @@ The table of docs/impacts.md:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import sys
 
 from isa_ros.config.paths import find, SCENARIOS
 from isa_ros.config.text.yaml_text import read, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
@@ -40,7 +40,7 @@ TRACED_NS = 10_000          # between the instants whose ground force is compare
 TIME_BYTES = 8              # a snapshot begins with the time
 
 
-@dataclass(frozen=True)
+@frozen
 class Peaks:
     """The largest values of one drop, N."""
 

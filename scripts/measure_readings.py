@@ -12,13 +12,14 @@ shipped.
 
 import argparse
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 import math
 from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.config.runs.changed_parameters import with_parameters
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI
 from isa_ros.errors import SimulationDiverged
 from isa_ros.reu.block import Pid
@@ -40,7 +41,7 @@ LINEAR_HEAD = ('reading', 'rise 10-90 / 0-90 / 0-100, ms', 'overshoot, %',
                'drop: peak N, over reference, tracking %')
 
 
-@dataclass(frozen=True)
+@frozen
 class Reading:
     """One reading: a preset with other values, by keys of `isa params`."""
 

@@ -1,17 +1,17 @@
 """All peers, and the packages they need."""
 
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
 from benchmarks.peers.peer_end import PeerEnd
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
 
-@dataclass(frozen=True)
+@frozen
 class Peer:
     """A middleware; ``package`` is the one its file imports, '' for the standard library."""
 

@@ -14,13 +14,13 @@ Whatever happens to frames is noise by the seed of the run, the name of the actu
 and the plant step at which the frame leaves.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.actuator.frames import (
     burst_odds, burst_rates, copy_frame, DOWN, HELD_BACK, leaves, LINE, put_frame, SLOTS,
     take_frame, UP)
 from isa_ros.actuator.inbox import latch, merge
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import choice, parameter, Parameters
@@ -47,7 +47,7 @@ def _off(doc: str, unit: str, most: float, *, changeable: bool = False) -> Any:
         doc, unit, absent=0.0, source=_ASSUMED, changeable=changeable, ge=0.0, le=most)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LinkSheet(Parameters):
     """Timing and losses of the link of an actuator."""
 

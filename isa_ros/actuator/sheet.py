@@ -1,12 +1,11 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass
-
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import (
     evidence_of, forcing_areas, null_speed, ratings_of, supervision_of, valve_lag)
 from isa_ros.core.changeable import sound
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
@@ -40,7 +39,7 @@ import numpy as np
 ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ActuatorSheet(Parameters):
     """The data sheet of one actuator: its plant, its REU and the wiring between them."""
 

@@ -1,11 +1,10 @@
 """The instants of an actuator: its tick, and its samples between them."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 
 
-@dataclass(frozen=True)
+@frozen
 class Timing:
     """Tick, offset of the REU's sampling instants, ns; seed of noise; stamps at t = 0, ns."""
 

@@ -5,11 +5,12 @@ It has no data of the host: no wall time, path, user, process mode or number of 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 import hashlib
 from importlib.metadata import version
 import platform
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.version import VERSION as OWN_VERSION
 from isa_ros.errors import BagError
 
@@ -30,7 +31,7 @@ KERNELS = 'kernels'
 _RESULT_DEPENDS_ON = ('llvmlite', 'numba', 'numpy')
 
 
-@dataclass(frozen=True)
+@frozen
 class Provenance:
     """Resolved configuration, scenario (YAML texts), seed, and versions by package name."""
 

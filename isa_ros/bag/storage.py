@@ -1,13 +1,12 @@
 """How the files of a bag are stored."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, defaults, parameter, Parameters
 
 BYTES_PER_MB = 1_000_000
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Storage(Parameters):
     """Compression and splitting of a bag's files."""
 

@@ -1,7 +1,6 @@
 """All groups of rows; see `isa_ros.bench` for how to add one."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 import sys
@@ -18,6 +17,7 @@ from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import Spec
 from isa_ros.bench.tick import tick_parts
+from isa_ros.core.frozen import frozen
 
 CHECKOUT = Path(isa_ros.__file__).parents[1]
 BENCHMARKS = 'benchmarks'
@@ -26,7 +26,7 @@ OF_BENCHMARKS = ('growth', 'peers', 'bus')
 """Names of its groups."""
 
 
-@dataclass(frozen=True)
+@frozen
 class BenchGroup:
     """A group of rows, and the runs it evaluates."""
 

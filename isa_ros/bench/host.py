@@ -1,18 +1,18 @@
 """Data of the host: its processors, and the memory and processor time of processes."""
 
-from dataclasses import dataclass
 import os
 from pathlib import Path
 import platform
 
 from isa_ros.bench.spec import ProcessMemory
+from isa_ros.core.frozen import frozen
 
 _PROC = Path('/proc')
 _KIB = 1024
 _USER_TIME, _SYSTEM_TIME = 11, 12   # in /proc/PID/stat after the name and the state
 
 
-@dataclass(frozen=True)
+@frozen
 class Machine:
     """Description of the machine for a page of measurements."""
 

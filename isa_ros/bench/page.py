@@ -1,12 +1,13 @@
 """Output of the rows as text, as JSON, and as the page docs/bench.md with its figure."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
+from isa_ros.core.frozen import frozen
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import digits, padded
 from matplotlib.figure import Figure
@@ -40,7 +41,7 @@ class BenchDrawing(NamedTuple):
     figure: Figure
 
 
-@dataclass(frozen=True)
+@frozen
 class Section:
     """The rows of one group."""
 
@@ -50,7 +51,7 @@ class Section:
     drawing: BenchDrawing | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class Report:
     """Measurements of one call, and the machine."""
 

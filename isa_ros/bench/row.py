@@ -1,14 +1,16 @@
 """One measured number with its floor and its aim, and the timing of short pieces of work."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from statistics import median
 import time
+
+from isa_ros.core.frozen import frozen
 
 REPEATS = 7
 
 
-@dataclass(frozen=True)
+@frozen
 class Aim:
     """A bound that a value should reach."""
 
@@ -25,7 +27,7 @@ class Aim:
         return f'{"<=" if self.is_most else ">="} {self.value:g}'
 
 
-@dataclass(frozen=True)
+@frozen
 class Row:
     """One measurement; ``ratio`` to the floor is defined so that more is better."""
 

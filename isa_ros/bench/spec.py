@@ -1,10 +1,12 @@
 """Specification of a measured run, and its measured values."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 import json
 from statistics import median
 from typing import NamedTuple
+
+from isa_ros.core.frozen import frozen
 
 LEG, QUADRUPED = 'leg', 'quadruped'
 PROCESSES, ONE_PROCESS = 'processes', 'one process'
@@ -16,7 +18,7 @@ INTERPRETER, IMPORTS, PREPARED, JOINED, RECORDER = (
 """Parts of the start-up."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Spec:
     """One run: plant, way of running, and number of ticks of 1 ms."""
 
@@ -59,7 +61,7 @@ class ProcessMemory(NamedTuple):
     """Shared pages are divided by the number of processes that share them."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Measured:
     """Measured values of one run; times in s."""
 
@@ -91,7 +93,7 @@ class Measured:
         return 1.0 / self.ticks_per_s
 
 
-@dataclass(frozen=True)
+@frozen
 class Failed:
     """A run that failed before its values were measured."""
 

@@ -6,9 +6,8 @@ Neglected: their change with pressure, and that of density and specific heat wit
 2 % and 5 % over 30 K.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.elementary import exp, log
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -20,7 +19,7 @@ _WALTHER = 0.7              # mm2/s, the constant of ASTM D341 for viscosities a
 _COOL, _WARM = 40.0, 100.0  # celsius, of the two viscosities of a data sheet
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class MineralOil(Parameters):
     """A hydraulic oil as its data sheet describes it."""
 

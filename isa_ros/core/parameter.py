@@ -1,12 +1,13 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, make_dataclass, replace
+from dataclasses import field, fields, replace
 from functools import cache
 from keyword import iskeyword
 import math
 from typing import Any, TypeVar
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import after, in_si, quantity
 from isa_ros.errors import ConfigError, ParameterError
@@ -108,7 +109,7 @@ def named_sets(union: Any) -> Any:
     return field(metadata={'named': union})
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Parameters:
     """
     Base of every parameter set: checked on construction, immutable afterwards.
@@ -155,8 +156,8 @@ def set_by_name(named: Mapping[str, Parameters], union: Any) -> Parameters:
 @cache
 def _named_class(names: tuple[str, ...], union: Any) -> type[Parameters]:
     """Return the class with these fields; the same one for the same names, so that they equal."""
-    return make_dataclass('NamedSets', [(given, union) for given in names], bases=(Parameters,),
-                          frozen=True, kw_only=True)
+    return frozen(kw_only=True)(
+        type('NamedSets', (Parameters,), {'__annotations__': dict.fromkeys(names, union)}))
 
 
 def defaults(cls: type[_P]) -> _P:

@@ -7,7 +7,6 @@ bodies in their own states.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 import hashlib
 from itertools import accumulate
 import json
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.core.atomic_file import replace_file
+from isa_ros.core.frozen import frozen
 from isa_ros.core.record import first_not_finite
 from isa_ros.core.signals import COMMAND, GAINS_OF_COMMAND, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
@@ -30,7 +30,7 @@ _CHECKSUM = 'sha256'
 _SHOWN = 12  # digits of a digest
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RunState:
     """Everything the rest of a run depends on but its configuration and its inputs."""
 

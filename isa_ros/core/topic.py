@@ -1,11 +1,11 @@
 """A topic and the quality of service its publisher offers."""
 
-from dataclasses import dataclass
+from isa_ros.core.frozen import frozen
 
 _INFINITE = (9223372036, 854775807)  # RMW_DURATION_INFINITE (s, ns)
 
 
-@dataclass(frozen=True)
+@frozen
 class Qos:
     """Offered quality of service; deadline, lifespan and lease are infinite."""
 
@@ -34,7 +34,7 @@ KEPT = Qos(durability='transient_local')
 """Of messages that are rare and stay in force."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Topic:
     """One topic of a bag: fully qualified name, message type, offered quality of service."""
 

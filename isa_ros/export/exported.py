@@ -1,6 +1,5 @@
 """What is exported of an actuator: its memory before its start, and the kernels over it."""
 
-from dataclasses import dataclass
 import re
 from typing import Any, NamedTuple
 
@@ -9,6 +8,7 @@ from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.ticking import group_tick, Ticked
 from isa_ros.config.assembly import bodies_in_form, surroundings_of, timing_of
+from isa_ros.core.frozen import frozen
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.export.chosen import ChosenActuator
@@ -37,7 +37,7 @@ class Called(NamedTuple):
         return f'kernel_{self.function.__name__}'
 
 
-@dataclass(frozen=True)
+@frozen
 class Exported:
     """An actuator and its kernels; its state is zero, as before its start."""
 

@@ -5,11 +5,12 @@ This module imports neither ROS nor numba: `isa --help` imports it.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.config.models.bus_port import BUS_OFF, POWERLESS, PULLED
+from isa_ros.core.frozen import frozen
 from isa_ros.run.options import Request
 
 FRAME, REAL_TIME = 'frame', 'real_time'
@@ -84,7 +85,7 @@ BUSES: Mapping[str, Bus] = {
 """Every bus by its name."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BusRequest:
     """A run whose commands come from the master of a bus."""
 

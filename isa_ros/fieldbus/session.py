@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.line import Line
@@ -23,7 +24,7 @@ PrintLine = Callable[[str], object]
 """Prints a line for the user."""
 
 
-@dataclass(frozen=True)
+@frozen
 class BusRun:
     """A session on a bus; ``pace`` is that of real-time pace, None in frame pace."""
 

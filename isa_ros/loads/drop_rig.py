@@ -10,11 +10,11 @@ Equations L17-L20 of docs/equations.md.
 Neglected: the rope's mass and its swinging, air drag, the hand's reaction before release.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.contact import one_sided
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
@@ -28,7 +28,7 @@ def external_force() -> Any:
     return fault('force from outside on it, > 0 pushes out', 'N | Nm', ge=-2e7, le=2e7)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Wheel(Parameters):
     """The paper's load wheel with the rig's two end stops."""
 
@@ -48,7 +48,7 @@ class Wheel(Parameters):
                 f'{self.stop_high:g} m | rad')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DropRig(Wheel):
     """The load wheel with a weight on a slack rope at its rim."""
 

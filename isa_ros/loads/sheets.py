@@ -6,9 +6,9 @@ plus the forces of `isa_ros.loads.forces`. Generalised units: N, m, kg or Nm, ra
 inertia, the force from outside and the place of a support may change during a run, at a tick.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.signals import LOAD_PORT
@@ -23,7 +23,7 @@ def _moving_mass() -> Any:
         changeable=True, gt=0.0, le=1e5)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Blocked(Parameters):
     """The output held by a stiff support: a fixture on a spring to ground."""
 
@@ -37,7 +37,7 @@ class Blocked(Parameters):
         ge=-10.0, le=10.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Mass(Parameters):
     """A free mass or inertia, with a force on it."""
 
@@ -46,7 +46,7 @@ class Mass(Parameters):
         'force on it, e.g. weight; > 0 pushes out', 'N | Nm', changeable=True, ge=-2e7, le=2e7)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Pad(Parameters):
     """A free mass that meets a pad of a given material while it extends."""
 

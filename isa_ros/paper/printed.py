@@ -5,7 +5,6 @@ A number keeps its printed text, with its relation (`<`, `>`) and its note. Noth
 here; docs/paper-errata.md explains how the paper is read.
 """
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 import re
@@ -13,6 +12,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import read, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
@@ -24,7 +24,7 @@ TEXT = 'text'    # the unit of a value in words
 NO_NUMBERS = ('-', 'built-in')  # texts that are allowed in place of a number
 
 
-@dataclass(frozen=True)
+@frozen
 class Printed:
     """One printed value."""
 

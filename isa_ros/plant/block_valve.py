@@ -8,9 +8,9 @@ chamber's side, so that a stopped mass cannot burst it. The oil between servo va
 neglected: what flows through the lands flows through the poppet.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.orifice import root_slope, signed_sqrt
 from isa_ros.core.parameter import choice, fault, parameter, Parameters
@@ -23,12 +23,12 @@ import numpy as np
 WHEN_OFF = 'when_off'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneBlock(Parameters):
     """The service lines go from the servo valve straight to the chambers."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PoppetBlock(Parameters):
     """A poppet in each service line, which a spring closes and one solenoid for both opens."""
 

@@ -8,10 +8,10 @@ pressure of each chamber, and while its oil boils the volume of the cavity; a st
 pressures below the atmosphere, or oil with air, is one of volumes (C11, `cavitation`).
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.constants import ATMOSPHERE
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
@@ -24,7 +24,7 @@ from isa_ros.plant.motor import Motor
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ChamberOil(Parameters):
     """The enclosed oil and the leakage past the piston."""
 

@@ -16,9 +16,9 @@ The last channel is that of the supply's pressure, which has a transmitter of it
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
 from isa_ros.core.parameter import parameter, Parameters
@@ -54,7 +54,7 @@ def _drift(unit: str, largest: float) -> Any:
                      changeable=True, ge=-largest, le=largest)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Channel(Parameters):
     """Errors of any channel."""
 
@@ -75,7 +75,7 @@ class Channel(Parameters):
             raise ParameterError(f'stuck = {self.stuck:g}, must be 0 or 1')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ConvertedChannel(Channel):
     """Errors of a channel with a converter."""
 
@@ -90,7 +90,7 @@ class ConvertedChannel(Channel):
             raise ParameterError(f'lost = {self.lost:g}, must be 0 or 1')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PositionChannel(Channel):
     """Errors of the encoder."""
 
@@ -99,7 +99,7 @@ class PositionChannel(Channel):
     drift_per_s: float = _drift('m/s | rad/s', 0.1)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ForceChannel(ConvertedChannel):
     """Errors of the load cell or torque sensor."""
 
@@ -108,7 +108,7 @@ class ForceChannel(ConvertedChannel):
     drift_per_s: float = _drift('N/s | Nm/s', 1e7)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PressureChannel(ConvertedChannel):
     """Errors of a pressure sensor."""
 
@@ -117,7 +117,7 @@ class PressureChannel(ConvertedChannel):
     drift_per_s: float = _drift('Pa/s', 1e8)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SpoolChannel(ConvertedChannel):
     """Errors of the spool sensor."""
 
@@ -126,7 +126,7 @@ class SpoolChannel(ConvertedChannel):
     drift_per_s: float = _drift('m/s', 2e-3)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CurrentChannel(ConvertedChannel):
     """Errors of the current sensor, in A of the amplifier."""
 

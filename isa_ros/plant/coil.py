@@ -10,10 +10,10 @@ between a sound coil and one with shorted turns; by `ClosedLoopCoil` also the 1.
 sampling of the current loop.
 """
 
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, fault, parameter, Parameters
 from isa_ros.core.record import record
@@ -24,7 +24,7 @@ CLOSED_LOOP = 0
 EXPLICIT = 1
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Coil(Parameters):
     """The amplifier and the valve's two redundant coils."""
 
@@ -40,7 +40,7 @@ class Coil(Parameters):
         'share of the turns of one coil that are shorted', '1', ge=0.0, le=0.95)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ClosedLoopCoil(Coil):
     """The closed current loop as one pole (eq 10)."""
 
@@ -48,7 +48,7 @@ class ClosedLoopCoil(Coil):
         'pole p_c of the closed current loop (eq 10)', 'rad/s', gt=0.0, le=5.0e4)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ExplicitCoil(Coil):
     """The coil driven by the amplifier's voltage, with the resonance of the paper's figure 8 B."""
 

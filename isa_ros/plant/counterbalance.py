@@ -6,8 +6,7 @@ higher its pressure is; a check valve lets oil in past it. Signs and what is neg
 `load_holding`.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.record import record
@@ -17,7 +16,7 @@ from isa_ros.plant.load_holding import (
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CounterbalanceHolding(PoppetFaults):
     """A relief valve with a pilot, and a check valve past it."""
 

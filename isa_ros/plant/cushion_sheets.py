@@ -4,9 +4,9 @@ Data sheets of cushioned ends; `isa_ros.plant.cushion` has the equations.
 What does not fit its cylinder is refused when all values are known, after those that scale.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ParameterError
@@ -16,12 +16,12 @@ SHUT, OPEN = 1.0, 2.0
 """What `check_stuck` may be besides 0."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneCushion(Parameters):
     """The port of the chamber is open up to the end."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SpearCushion(Parameters):
     """A spear on the piston, or a sleeve around the rod, that closes the port near the end."""
 

@@ -4,10 +4,10 @@ What the oil moves: cylinders with one or two rods, and vane actuators.
 Chamber A is the cap side. Telescopic cylinders are not there: their areas change with the stage.
 """
 
-from dataclasses import dataclass
 import math
 from typing import Any
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
@@ -20,7 +20,7 @@ def rated_pressure() -> Any:
         absent=20.7, source='paper Table 2', gt=0.0, le=70.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Cylinder(Parameters):
     """Cylinder with a rod through its head, and a second one through its cap or none."""
 
@@ -61,7 +61,7 @@ class Cylinder(Parameters):
         return self.stroke_mm * MILLI
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Vane(Parameters):
     """Rotary vane actuator with equal displacement both ways."""
 

@@ -5,9 +5,8 @@ The force opposes motion: it is subtracted from the hydraulic force. Units N, m 
 or Nm, rad (rotary).
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.elementary import exp
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -19,7 +18,7 @@ import numpy as np
 LEAST_STICTION = 1e-12  # of the Coulomb force: 1e4 of its roundings, so that g(v) > 0
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Friction(Parameters):
     """LuGre friction."""
 

@@ -1,8 +1,8 @@
 """Data sheets of hoses: their walls, and what they resist; `isa_ros.plant.hose` has the rest."""
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.units import LPM, MILLI, MILLILITRE, MPA
 from isa_ros.errors import ParameterError
@@ -13,12 +13,12 @@ _FITTED = (2700.0, 14000.0)     # Reynolds numbers at which a/Re + b is Blasius'
 _ROUNDED = 5e-3             # a data sheet prints three digits
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RigidWall(Parameters):
     """A pipe whose wall does not give way."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ExpandingWall(Parameters):
     """A wall by the volumetric expansion of its data sheet."""
 
@@ -27,19 +27,19 @@ class ExpandingWall(Parameters):
     pressure_mpa: float = parameter('at which it is stated', 'MPa', gt=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class EffectiveWall(Parameters):
     """A wall by the bulk modulus that oil has in it."""
 
     bulk_modulus: float = parameter('of oil and wall together', 'Pa', ge=1e6, le=2e9)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneHoses(Parameters):
     """The valve block is mounted on the cylinder."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LumpedHoses(Parameters):
     """A hose of the same kind in each of both service lines."""
 

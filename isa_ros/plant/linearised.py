@@ -6,9 +6,9 @@ eigenvalues tell whether the step damps what the equations damp.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
 from isa_ros.plant.coil import EXPLICIT
 from isa_ros.plant.servo_valve import flow_curve
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 _ROUNDED = 1e-9     # the growth of a state at rest, whose eigenvalue is 0, by rounding
 
 
-@dataclass(frozen=True)
+@frozen
 class LoadSide:
     """The load's side of the force sensor, linearised; units of the actuator."""
 

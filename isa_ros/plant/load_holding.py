@@ -8,9 +8,9 @@ the chamber, ``line`` that of the hose, ``pilot`` that of the other hose, in Pa.
 forces, hysteresis, the volume of the pilot line, and the oil that a moving poppet displaces.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, Parameters
 from isa_ros.core.record import record
@@ -36,12 +36,12 @@ FASTEST_SWING = 0.5     # rad in a step: a poppet on the oil that it lets out
 _SHUT = 1e-15           # m3/s/sqrt(Pa), some 1e-7 ml/min: no flow
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneHolding(Parameters):
     """The hose ends at the chamber."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PoppetFaults(Parameters):
     """What can go wrong with a valve that holds a load."""
 

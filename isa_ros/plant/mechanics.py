@@ -5,17 +5,16 @@ The sensor is the spring between the actuator and its load and reads the force i
 force > 0 pushes the load out. Units N, m, kg (linear) or Nm, rad, kg m2 (rotary).
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.contact import one_sided
 from isa_ros.core.elementary import tanh
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Mechanics(Parameters):
     """Inertia, force sensor and end stops."""
 

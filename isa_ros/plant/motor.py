@@ -7,10 +7,10 @@ efficiencies of the sheet come out again where they are the only losses. Neglect
 the pistons, a case drain of its own, and that the oil expands on its way through.
 """
 
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import numbers, parameter, Parameters
 from isa_ros.core.units import MILLILITRE, MPA, PERCENT
 from isa_ros.errors import ParameterError
@@ -30,7 +30,7 @@ class Losses(NamedTuple):
     viscous: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Motor(Parameters):
     """Motor of constant displacement, with its efficiencies at two points."""
 

@@ -5,8 +5,7 @@ Signs and what is neglected: `load_holding`. It is open or shut: with a falling 
 pressure breaks down, the valve shuts, and the load comes down in jerks.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.record import record
@@ -16,7 +15,7 @@ from isa_ros.plant.load_holding import (
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PilotCheckHolding(PoppetFaults):
     """A check valve whose poppet a piston lifts."""
 

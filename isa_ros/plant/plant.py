@@ -5,8 +5,7 @@ State, rates and parameters are nested records of floats, one row per actuator
 (`PLANT_STATE`, `PLANT`); signs as in the components' headers.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
@@ -62,7 +61,7 @@ PLANT_STATE = np.dtype([
 EVERY_STEP = 1e9    # m3: every chamber is smaller, so that every step is one of volumes
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PlantSheet(Parameters):
     """The data sheet of one actuator's hydraulics, mechanics and sensors."""
 
@@ -94,7 +93,7 @@ class PlantSheet(Parameters):
                     'only hoses have; set hoses.kind: lumped')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LinearPlant(PlantSheet):
     """A cylinder; generalised units N, m."""
 
@@ -104,14 +103,14 @@ class LinearPlant(PlantSheet):
     return_spring: Spring = nested(NoneSpring())
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RotaryPlant(PlantSheet):
     """A vane actuator; generalised units Nm, rad."""
 
     drive: drives.Vane
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class MotorPlant(PlantSheet):
     """A motor that turns without an end; generalised units Nm, rad."""
 

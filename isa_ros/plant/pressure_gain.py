@@ -6,9 +6,9 @@ load pressure is how much more an open land passes than a closed one. So a state
 the leakage of a land at that current, and contradicts another leakage there.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
@@ -17,7 +17,7 @@ _HALVINGS = 60
 _LEAST = 1e-3   # %; sheets state 30 to 80
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PressureGain(Parameters):
     """The load pressure with both ports shut at a small current; 0 %: not stated."""
 

@@ -4,8 +4,7 @@ Overload protection of each chamber: relief to return, refill from return.
 Flows are positive OUT OF the chamber. Both valves are static.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -14,7 +13,7 @@ from isa_ros.core.units import LPM, MPA
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Relief(Parameters):
     """Relief and anti-cavitation valves of one chamber."""
 

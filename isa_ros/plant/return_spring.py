@@ -7,8 +7,7 @@ drop of that line, the mass of the spring, and that a breather lets out no leake
 pulls against a spring in chamber A is not there.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, fault, parameter, Parameters
 from isa_ros.core.record import record
@@ -19,12 +18,12 @@ import numpy as np
 TANK = 'tank'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneSpring(Parameters):
     """The valve feeds both chambers."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CoilSpring(Parameters):
     """A spring in chamber B, whose port the valve does not feed."""
 

@@ -5,8 +5,7 @@ All measurements that the controller uses and that are published pass through th
 period of the converters.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, section
 from isa_ros.core.record import record
@@ -21,7 +20,7 @@ from isa_ros.plant.temperature_sensor import (
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Sensors(Parameters):
     """Ranges, resolutions, and the errors of the channels."""
 

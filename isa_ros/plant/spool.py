@@ -6,9 +6,9 @@ is never put inside another one; `PilotedSpool` is the same spool without its lo
 is a block of the REU. Currents here are on the series scale of figure 5.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, fault, nested, parameter, Parameters
 from isa_ros.core.record import record
@@ -26,7 +26,7 @@ _UNLIMITED = 1.0 - 1e-9     # of a saturation: nothing is cut off
 STUCK = '1: the spool is blocked and holds its position'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NullBias(Parameters):
     """The current that holds the spool off its null, and its shifts."""
 
@@ -44,7 +44,7 @@ NO_BIAS = NullBias(
     reference_supply_mpa=21.0, reference_celsius=40.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Spool(Parameters):
     """Parameters of every spool."""
 
@@ -55,19 +55,19 @@ class Spool(Parameters):
     stuck: float = fault(STUCK, '1', is_whole=True, ge=0.0, le=1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ClosedLoopSpool(Spool):
     """Pilot stage and spool feedback in one: equation 8."""
 
     loop_gain_per_s: float = parameter('K_loop of equation 8', '1/s', gt=0.0, le=1.0e4)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DirectSpool(Spool):
     """A spool that follows the current as a second-order system: equation 7."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PilotedSpool(Spool):
     """Equation 8 without its loop: the current drives the spool's speed."""
 
@@ -75,7 +75,7 @@ class PilotedSpool(Spool):
         'K_pilot, spool speed per series current', 'mm/s/mA', gt=0.0, le=1.0e4)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DataSheetSpool(Parameters):
     """A spool that follows the current as a data sheet's frequency response: equation 7."""
 
@@ -95,7 +95,7 @@ class DataSheetSpool(Parameters):
         return stated / math.sqrt(damped + math.sqrt(damped * damped + 1.0))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ResponseSpool(Parameters):
     """A spool with the frequency response of a data sheet at a small and a large amplitude."""
 

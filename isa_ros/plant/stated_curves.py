@@ -1,15 +1,15 @@
 """What the data sheet of a servo valve states over its current: flow, leakage, shift of null."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import numbers, parameter, Parameters
 from isa_ros.core.piecewise import POINTS
 from isa_ros.errors import ParameterError
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class StraightFlow(Parameters):
     """Flow proportional to the current, up to the rated one."""
 
@@ -28,7 +28,7 @@ class StraightFlow(Parameters):
         return 0.0, self.rated_flow_lpm
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PointsFlow(Parameters):
     """Flow over current as points, with straight lines between them."""
 
@@ -56,7 +56,7 @@ class PointsFlow(Parameters):
         return self.flow_lpm
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SidesFlow(Parameters):
     """Flow over current as points, extending and retracting; straight lines between them."""
 
@@ -89,7 +89,7 @@ class SidesFlow(Parameters):
         return self.extending_lpm
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NullShift(Parameters):
     """Shift of the null as data sheets state it, beside that of the spool's null_bias."""
 
@@ -100,7 +100,7 @@ class NullShift(Parameters):
         'with oil temperature', '%/K', absent=0.0, source='assumed, none', ge=-1.0, le=1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class StatedLeakage(Parameters):
     """Leakage from supply to return over current as points, with both ports shut."""
 

@@ -7,8 +7,7 @@ n is white and normal, of `isa_ros.core.noise`, behind the channels of the other
 sensor keeps its reading. Neglected: its delay, for the oil takes seconds to get warm.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
 from isa_ros.core.parameter import parameter, Parameters
@@ -21,7 +20,7 @@ import numpy as np
 _IDEAL = 'assumed, ideal'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TemperatureSensor(Parameters):
     """Resolution and errors of the temperature sensor."""
 

@@ -8,9 +8,9 @@ and solved exactly (T6). Neglected: heat of compression, and the oil of both cha
 or less than at mid stroke.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.oil_properties import (
     MineralOil, PROPERTIES, properties_record, softness, thickness)
@@ -21,12 +21,12 @@ from isa_ros.plant.hose import warm_hoses
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneThermal(Parameters):
     """Oil at plant.oil.temperature_celsius, whatever the losses."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LumpedThermal(Parameters):
     """Oil and body as two heat capacities; viscosity and compressibility follow the oil's."""
 

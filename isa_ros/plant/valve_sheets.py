@@ -4,9 +4,9 @@ Data sheets of the servo valve's metering; `isa_ros.plant.servo_valve` has the e
 Currents are on the series scale of figure 5, flows those of one land with the factor 1.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.core.units import PERCENT
 from isa_ros.errors import ParameterError
@@ -16,7 +16,7 @@ from isa_ros.plant.stated_curves import (
     interpolated, NullShift, PointsFlow, SidesFlow, StatedLeakage, StraightFlow)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Lap(Parameters):
     """Overlap of each land; negative: underlap."""
 
@@ -26,7 +26,7 @@ class Lap(Parameters):
     pb_um: float = parameter('land P-B', 'um', ge=-20.0, le=50.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Valve(Parameters):
     """Parameters of every valve; currents on the series scale of figure 5."""
 
@@ -59,7 +59,7 @@ class Valve(Parameters):
         refuse_hysteresis(self)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DualGainValve(Valve):
     """Ultra-low-leakage valve: a low flow gain about null, a high one beyond."""
 
@@ -76,7 +76,7 @@ class DualGainValve(Valve):
                 self.low_gain_lpm_per_ma / self.high_gain_lpm_per_ma)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class HighResponseValve(Valve):
     """High-response valve: one flow gain about null that falls off towards full flow."""
 
@@ -93,7 +93,7 @@ class HighResponseValve(Valve):
         return None
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DataSheetValve(Parameters):
     """Servo or proportional valve as its data sheet has it: flow and leakage over current."""
 

@@ -1,7 +1,6 @@
 """The processes of one run, as bring-up and launch files start them, and child processes."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 import json
 import os
 from pathlib import Path
@@ -12,6 +11,7 @@ import time
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.names import parted, placed
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE
@@ -32,7 +32,7 @@ _ROOT = Path(__file__).parents[2]
 ParameterValue = bool | int | float | str | list[str] | tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Process:
     """One node in a process of its own."""
 

@@ -1,10 +1,10 @@
 """Differences of two runs: the first one, those of each topic, and the verdict."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.timebase import NS_PER_SECOND
 
 ABSENT = 'absent'
@@ -15,7 +15,7 @@ BAG = 'bag'
 Value = str | int | float | bytes | bool
 
 
-@dataclass(frozen=True)
+@frozen
 class FirstDifference:
     """First place where two runs, or two topics, differ."""
 
@@ -62,7 +62,7 @@ class TopicDifference(NamedTuple):
     """The largest deviation in proportion to the values of its field; None: no float differs."""
 
 
-@dataclass(frozen=True)
+@frozen
 class RunDifference:
     """Extent of the comparison, and the first difference, None for equal runs."""
 

@@ -8,7 +8,7 @@ needed.
 
 from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 import math
@@ -20,6 +20,7 @@ from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.core.changing_values import RECORDED
+from isa_ros.core.frozen import frozen
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, ConfigError, SetpointError
@@ -49,7 +50,7 @@ SENT = 'sent_setpoint'
 TUNED = 'applied_parameters'
 
 
-@dataclass(frozen=True)
+@frozen
 class ReplayReport:
     """The comparison of a replay with its bag."""
 

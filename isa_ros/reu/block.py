@@ -6,8 +6,7 @@ is the reference of the next block inwards, or the series-scale coil current (A)
 is none. Gains are per that unit.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.record import record
@@ -23,7 +22,7 @@ LARGE = 0.1         # of the limit: a proportional part that only a turn of the 
 UNWINDING = 8.0     # a full integral is gone within 10 ms of a turn
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Pid(Parameters):
     """PID gains, output per measured; the output's unit is that of the next block inwards."""
 

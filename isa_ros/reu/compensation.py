@@ -6,20 +6,19 @@ demand and output have the unit of the spool (m) or of the series current (A), w
 commands.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, Parameters, tunable
 from isa_ros.core.record import record
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Linear(Parameters):
     """No compensation."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DualGain(Parameters):
     """Inverse of the valve's dual-gain flow curve."""
 
@@ -30,7 +29,7 @@ class DualGain(Parameters):
         "(the paper's text)", 'demand', 'velocity')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DeadBand(Parameters):
     """Continuous inverse of a dead band: the overlap is added to every demand but small ones."""
 

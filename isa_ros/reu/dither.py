@@ -6,8 +6,7 @@ dither. It changes at conversions of the current block, and is off where the out
 references that are recorded are without it, the measured current has it.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ParameterError
@@ -16,7 +15,7 @@ _LOWEST = 1e-3      # Hz
 _ROUNDED = 5e-3     # of a frequency that is printed with three digits
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Dithered(Parameters):
     """Dither of a current block."""
 
@@ -53,7 +52,7 @@ class Dithered(Parameters):
         return max(1, round(0.5 * self.rate_hz / self.dither_hz)) if self.dither_hz > 0.0 else 1
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class HeldWithDither(Dithered):
     """The block samples and holds its reference; its loop is closed in the plant's equations."""
 

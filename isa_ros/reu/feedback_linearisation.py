@@ -7,10 +7,10 @@ Its output commands the spool (m) or the series-scale current (A). After the mod
 control of Boaventura et al. 2015, which the paper names as future work.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.elementary import log
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.piecewise import LINES, x_on_lines
@@ -19,7 +19,7 @@ from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FeedbackLinearisation(Parameters):
     """Wanted dynamics of the force, and the values the block's model assumes."""
 

@@ -4,10 +4,10 @@ Discrete first-order filters; coefficients are computed once, at configuration.
 The speed estimate is the encoder differenced and smoothed by one.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.elementary import exp
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -25,7 +25,7 @@ def low_pass(previous, value, alpha):
     return previous + alpha * (value - previous)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SpeedEstimate(Parameters):
     """Rate and smoothing of the speed that damping and compensation use."""
 

@@ -4,15 +4,14 @@ The position block as an impedance: its output is the reference of the force or 
 Reference in m or rad, output in N or Nm. The gains in force come with the setpoint.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, tunable
 from isa_ros.core.record import record
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Impedance(Parameters):
     """Impedance gains in force before the first setpoint, and the limits of the output."""
 

@@ -5,10 +5,10 @@ Equations 1 and 2 of the paper. It commands the amplifier's voltage (V) from the
 current (A); the gain on the demand replaces an integral, without its phase lag.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.elementary import cos, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, tunable
 from isa_ros.core.record import record
@@ -18,7 +18,7 @@ from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LeadLag(Dithered):
     """Gains of the current loop."""
 

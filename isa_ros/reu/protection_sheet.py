@@ -6,11 +6,11 @@ valve and supply. The defaults are outside of what the shipped scenarios reach.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, make_dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any, get_type_hints, Protocol, TypeVar
 
 from isa_ros.core.conditions import (
     ASSUMED, BITS, Condition, CONDITIONS, LevelDefaults, REACTIONS)
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.core.units import quantity
 from isa_ros.errors import ParameterError
@@ -35,19 +35,19 @@ def _levels(condition: Condition, own: LevelDefaults) -> type[Parameters]:
             f'{own.compared}; 0: off', condition.level_unit, absent=absent, source=source,
             changeable=True, ge=0.0, le=own.most)
 
-    return make_dataclass(
-        condition.name.title().replace('_', ''), [
-            ('warning', float, level(own.warning, own.warning_source)),
-            ('trip', float, level(own.trip, own.trip_source)),
-            ('delay_ms', float, parameter(
-                'time beyond a level before it counts, rounded up to whole conversions', 'ms',
-                absent=own.delay_ms, source=ASSUMED, changeable=True, ge=0.0, le=60e3)),
-            ('reaction', str, choice(
-                'what a trip causes; none: the condition is not watched',
-                *(name for name in REACTIONS if own.may_limit or name != 'limit'),
-                absent=own.reaction, source=ASSUMED, numbered=REACTIONS))],
-        bases=(Parameters,), frozen=True, kw_only=True,
-        namespace={'__doc__': condition.meaning, '__module__': __name__})
+    declared = {
+        'warning': level(own.warning, own.warning_source),
+        'trip': level(own.trip, own.trip_source),
+        'delay_ms': parameter(
+            'time beyond a level before it counts, rounded up to whole conversions', 'ms',
+            absent=own.delay_ms, source=ASSUMED, changeable=True, ge=0.0, le=60e3),
+        'reaction': choice(
+            'what a trip causes; none: the condition is not watched',
+            *(name for name in REACTIONS if own.may_limit or name != 'limit'),
+            absent=own.reaction, source=ASSUMED, numbered=REACTIONS)}
+    return frozen(kw_only=True)(type(
+        condition.name.title().replace('_', ''), (Parameters,),
+        {'__doc__': condition.meaning, '__annotations__': get_type_hints(Levels), **declared}))
 
 
 LEVELS: Mapping[str, type[Parameters]] = {
@@ -72,7 +72,7 @@ def _with_levels(cls: type[_P]) -> type[_P]:
     return cls
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 @_with_levels
 class Protection(Parameters):
     """What the REU watches, and its reactions."""

@@ -4,9 +4,10 @@ Gain scheduling: a factor over the stroke, and one on demands that retract.
 The factor over the stroke is a table at equal distances with straight lines between.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import Parameters, tunable
 import numpy as np
@@ -14,17 +15,17 @@ import numpy as np
 POINTS = 21
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Constant(Parameters):
     """The same gain everywhere."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class OilStiffness(Parameters):
     """Gains divided by the stiffness in the force loop, relative to its smallest value."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ThreePoints(Parameters):
     """Straight lines between three factors."""
 
@@ -33,7 +34,7 @@ class ThreePoints(Parameters):
     extended: float = tunable('factor at the extended end', '1', ge=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FivePoints(Parameters):
     """Straight lines between five factors, as `isa tune` finds them."""
 

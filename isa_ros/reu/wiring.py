@@ -8,9 +8,8 @@ that is on. With all but the current block off the REU is a plain valve amplifie
 a block have the unit of its output: switching the next block inwards on or off changes it.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.device import CURRENT, MODES
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, fault, nested, parameter, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
@@ -25,7 +24,7 @@ from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.protection_sheet import Protection
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Device(Parameters):
     """Times and movements of the device's states."""
 
@@ -59,12 +58,12 @@ BLOCKS = 4  # in the standard firmware (paper section 3)
 NEVER = 1 << 62  # plant steps: the period of a block that is off
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Off(Parameters):
     """The block is not active; its reference goes to the next block inwards."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Held(Parameters):
     """The block samples and holds its reference; its loop is closed in the plant's equations."""
 
@@ -78,7 +77,7 @@ KINDS: dict[type, int] = {
 """The kinds of blocks as numbers, for the kernels."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Reu(Parameters):
     """The control blocks by the variable they control, outermost first."""
 

@@ -5,13 +5,13 @@ This module imports neither ROS nor numba, as `isa_ros.run.options`.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 import re
 from typing import Any
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 
 _LONGEST_NAMESPACE = 100     # letters; a topic of DDS has at most 255 with all names that follow
@@ -62,7 +62,7 @@ _NAMESPACE = re.compile(r'/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?')
 _FLAGS = {'true': True, '1': True, 'false': False, '0': False}
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Option:
     """One option: its name, its help text, and the interfaces that have it."""
 

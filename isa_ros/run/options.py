@@ -7,10 +7,11 @@ imports neither ROS nor numba: `isa --help` and launch files import it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, MISSING, replace
+from dataclasses import field, fields, MISSING, replace
 from pathlib import Path
 from typing import Any
 
+from isa_ros.core.frozen import frozen
 from isa_ros.run.option import Kind, Option, RosValue, SHIPPED
 from isa_ros.run.pacing import JOIN_TIMEOUT_S, Laps
 
@@ -23,7 +24,7 @@ def _option(kind: Kind, meaning: str, **more: Any) -> Mapping[str, Option]:
     return {'option': Option(kind=kind, meaning=meaning, **more)}
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Request:
     """Options of a run; a field without an option can be set by programs only."""
 

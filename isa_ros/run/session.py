@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import field
 import gc
 from itertools import count
 import os
@@ -15,6 +15,7 @@ from isa_ros.config.assembly import request_range_of, surroundings_in_form
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
+from isa_ros.core.frozen import frozen
 from isa_ros.core.saved_state import read_state, RunState, write_state
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
@@ -38,7 +39,7 @@ RUNS = Path('runs')
 Report = Callable[[RunProgress], None]
 
 
-@dataclass(frozen=True)
+@frozen
 class Session:
     """One run, read and checked; nothing is started yet."""
 

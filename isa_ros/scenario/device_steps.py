@@ -1,7 +1,6 @@
 """What an event of a track asks of the device: enable, mode, its reference, clear, quick stop."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.actuator.requests import start_mode
@@ -10,6 +9,7 @@ from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.device import MODES, REFERENCES
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check
 from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE)
@@ -20,7 +20,7 @@ import numpy as np
 _REQUESTS: Mapping[str, int] = {'clear_fault': HAS_CLEAR_FAULT, 'quick_stop': HAS_QUICK_STOP}
 
 
-@dataclass(frozen=True)
+@frozen
 class DeviceStep:
     """Takes effect once, at the tick of its event; None leaves a value unchanged."""
 

@@ -7,9 +7,9 @@ a saved state have the same one.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.noise import noise_key, uniforms
 from isa_ros.core.timebase import NS_PER_SECOND
 import numpy as np
@@ -18,7 +18,7 @@ RAMP, INTERMITTENT = 'ramp_s', 'intermittent'
 Values = Mapping[str, float]
 
 
-@dataclass(frozen=True)
+@frozen
 class Ramp:
     """Values that change linearly from those of the sound sheet, and then stay."""
 
@@ -48,7 +48,7 @@ class Ramp:
         return {RAMP: self.ticks * step_ns / NS_PER_SECOND}
 
 
-@dataclass(frozen=True)
+@frozen
 class Intermittent:
     """A fault that comes and goes: a loose contact."""
 

@@ -8,13 +8,14 @@ intermittent fault comes and goes.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 from isa_ros.config.models.fault_catalogue import SUPPLY
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changing_values import OFF, OVER
+from isa_ros.core.frozen import frozen
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.fault_courses import Course
 from isa_ros.scenario.waveforms import MOVES, Waveform, WAVEFORMS
@@ -26,7 +27,7 @@ BODY = 'body'
 """Of a body, such as a push of a robot."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Fault:
     """A change of parameters of an actuator, its port on a bus, a supply or a body; or a stop."""
 

@@ -8,7 +8,7 @@ replay.
 
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 import math
 from pathlib import Path
@@ -23,6 +23,7 @@ from isa_ros.config.text.changes import changed, Changes, SCENARIO
 from isa_ros.config.text.names import name_of, parted
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import dump, parse, read, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -43,7 +44,7 @@ from numpy.typing import NDArray
 BEYOND = 'beyond_range'
 
 
-@dataclass(frozen=True)
+@frozen
 class Scenario:
     """The commands of a run, and the run they are meant for."""
 

@@ -5,12 +5,13 @@ A missing velocity or effort is zero; a missing gain leaves the gain in force un
 """
 
 from bisect import bisect_right
-from dataclasses import dataclass, field
+from dataclasses import field
 import math
 
 from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -23,7 +24,7 @@ MOTIONS = (*OF_SETPOINTS, GAIT)
 _REST = Excursion(0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ImpedanceSetpoint(Parameters):
     """One impedance setpoint, SI."""
 
@@ -32,7 +33,7 @@ class ImpedanceSetpoint(Parameters):
     effort: float = parameter('feed-forward', 'N | Nm', ge=-MAX_EFFORT, le=MAX_EFFORT)
 
 
-@dataclass(frozen=True)
+@frozen
 class TrackEvent:
     """The command to one actuator at one tick; None leaves a value unchanged."""
 
@@ -84,7 +85,7 @@ class TrackEvent:
             row[name] = math.nan if value is None else value
 
 
-@dataclass(frozen=True)
+@frozen
 class Track:
     """The events of one actuator, in ascending order of time."""
 

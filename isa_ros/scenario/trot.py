@@ -11,12 +11,12 @@ Equations G1-G6 of docs/equations.md. Neglected: pitch, roll and bobbing of the 
 horizontal forces that the standing legs exert for the swinging ones, impact at touch-down.
 """
 
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import acos, atan2, cos, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.remembered import remembered
 from isa_ros.errors import ConfigError
@@ -28,7 +28,7 @@ CHECKED_INSTANTS = 400  # of a stride, at which a leg must reach its foothold
 LEGS_OF_A_PAIR = 2
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TrotParameters(Parameters):
     """Parameters of a trot."""
 

@@ -6,7 +6,7 @@ trot. On its own load it moves about its setpoint's position: a rotary actuator 
 the joint itself, a linear one through the linkage of the joint. Equations G1 to G7.
 """
 
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from functools import cached_property
 
 from isa_ros.config.models.catalogue import gait_section, leg_section
@@ -15,6 +15,7 @@ from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import merge, Place, written
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
@@ -30,7 +31,7 @@ LEG = 'hyq_real'  # leg of the trot in a run without one
 GAIT = 'trot'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class GaitParameters(TrotParameters):
     """A trot, and the part of it that one actuator follows."""
 
@@ -42,7 +43,7 @@ class GaitParameters(TrotParameters):
         'part of the torque of the joint that is added to the effort', '1', ge=0.0, le=1.0)
 
 
-@dataclass(frozen=True)
+@frozen
 class GaitMotion:
     """A trot in the coordinate of one actuator."""
 

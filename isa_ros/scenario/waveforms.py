@@ -6,7 +6,6 @@ that the damping of the impedance does not brake it; one of the effort changes t
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 import math
 from typing import ClassVar, NamedTuple, Protocol
 
@@ -14,6 +13,7 @@ from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.elementary import cos, exp, expm1, log, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check, choice, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import of_coordinate
@@ -52,7 +52,7 @@ class SetpointMotion(Protocol):
         ...
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Waveform(Parameters, ABC):
     """Parameters of every waveform; by default it moves the position."""
 
@@ -94,7 +94,7 @@ class Waveform(Parameters, ABC):
         return Excursion(self.amplitude * value, self.amplitude * rate, 0.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Sine(Waveform):
     """A sine from its setpoint on."""
 
@@ -111,7 +111,7 @@ class Sine(Waveform):
         _refuse_alias(self.frequency_hz, step_ns, f'{where}.frequency_hz')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Chirp(Waveform):
     """A sine from one frequency to another; it stays at the end frequency."""
 
@@ -155,7 +155,7 @@ class Chirp(Waveform):
             _refuse_alias(getattr(self, key), step_ns, f'{where}.{key}')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Pulse(Waveform):
     """A train of steps: the amplitude for a width, then zero until the period is over."""
 
@@ -182,7 +182,7 @@ class Pulse(Waveform):
         ticks_in(self.width_s, step_ns, f'{where}.width_s')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Way(Waveform):
     """A way at constant rate to the amplitude, where it stays."""
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 import re
 import sys
@@ -19,6 +19,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.controller import Controller
 from isa_ros.core.caller import warn
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, read_scenario, Scenario
@@ -34,7 +35,7 @@ Factories = BodyFactory | str | Mapping[str, BodyFactory | str]
 """What makes external bodies: a function, or its module:factory; a mapping by bodies' names."""
 
 
-@dataclass(frozen=True)
+@frozen
 class _InputFile:
     """The content of a file, and its name for messages."""
 

@@ -1,7 +1,7 @@
 """Sweeps: simulate a run with many combinations of values, on all cores; a table of results."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 import os
 import sys
@@ -11,6 +11,7 @@ from isa_ros.config.differences import section_differences
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.core.caller import warn
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.scripting.outcomes import Failure, Measure, outcomes
@@ -23,7 +24,7 @@ _DIGITS = 6
 _MOST_NAMED = 3     # values that follow a changed one
 
 
-@dataclass(frozen=True)
+@frozen
 class Sweep(Mapping[str, Any]):
     """
     A table with a row for each combination of values; the last key varies fastest.

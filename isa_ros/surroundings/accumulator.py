@@ -6,10 +6,9 @@ Pressures are gauge, flows leave the line when positive. Equations C7, C8, E7, E
 Neglected: length and resistance of the line, heat.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.elementary import exp, expm1, log
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel, kernel_function
 from isa_ros.core.parameter import fault, nested, parameter, Parameters
 from isa_ros.core.units import LITRE, LPM, MPA
@@ -20,7 +19,7 @@ from isa_ros.surroundings.supply_port import FedNode, HeldPort, MovingPort
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class AccumulatorSupply(Parameters):
     """A pressure-compensated pump with gas accumulator, line and relief valve."""
 

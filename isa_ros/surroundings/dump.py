@@ -6,11 +6,11 @@ The emergency stop opens the valve and switches the pump off; `dump.opened` is t
 both, 1 while it is open. The oil goes to the tank by a line of its own, past the return line.
 """
 
-from dataclasses import dataclass
 import math
 from typing import Any
 
 from isa_ros.core.elementary import exp
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.parameter import fault, parameter, Parameters
@@ -24,12 +24,12 @@ def _opened() -> Any:
                  ge=0.0, le=1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneDump(Parameters):
     """The supply has no dump valve."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LagDump(Parameters):
     """The pressure of an ideal supply falls to that of its return with one lag."""
 
@@ -38,7 +38,7 @@ class LagDump(Parameters):
     opened: float = _opened()
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ValveDump(Parameters):
     """A valve from the pressure line to the tank, whose opening follows its line with one lag."""
 

@@ -1,8 +1,7 @@
 """The line of a group of actuators that stop together, as a value that changes."""
 
-from dataclasses import dataclass
-
 from isa_ros.core.changeable import Changeable, changeables
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, Parameters
 
 EMERGENCY_STOP = 'emergency_stop'
@@ -11,7 +10,7 @@ OPEN = 'opened'
 """Name of the only value of a line."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class _EmergencyLine(Parameters):
     """The line of a group of actuators that stop together."""
 

@@ -9,10 +9,10 @@ more energy than it took, whatever the normal force does. Equations L9-L11 of do
 Neglected: the foot's radius and rolling, uneven ground, and wear of the rubber.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.contact import normal_force
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -23,7 +23,7 @@ import numpy as np
 SHORTEST_RELAXATION = 1e-4  # s, of c_t/k_t; a Runge-Kutta step is stable up to 2.8 times that
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Ground(Parameters):
     """The data sheet of foot and ground together."""
 

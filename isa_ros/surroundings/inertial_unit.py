@@ -1,7 +1,6 @@
 """An inertial measurement unit on a link of any body: data sheet, errors, and what it reads."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ParameterError
@@ -9,7 +8,7 @@ from isa_ros.errors import ParameterError
 AXES = 6  # numbers of a reading: specific force, then angular velocity
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class InertialUnitSheet(Parameters):
     """An inertial measurement unit, whatever link it is on."""
 
@@ -45,7 +44,7 @@ class InertialUnitSheet(Parameters):
         return ticks * step_ns
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class UnitErrors(Parameters):
     """Errors of an inertial unit; noise and bias are first those of its data sheet."""
 

@@ -5,10 +5,10 @@ Each holds the range of its joint, over which the linkage must be regular: it cl
 keeps its sign and is not too short for a port to divide by it.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.core.elementary import cos, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import rows_of
 from isa_ros.core.units import MILLI
@@ -22,7 +22,7 @@ LEVER_RULE = (f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the ran
 CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be regular
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Joint(Parameters):
     """The range of a joint, and sign and offset of its angle in its linkage."""
 
@@ -55,12 +55,12 @@ class Joint(Parameters):
                     f'{LEVER_RULE}')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Direct(Joint):
     """A rotary actuator on the joint itself."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SliderCrank(Joint):
     """A cylinder between two pins at fixed distances from the joint."""
 
@@ -69,7 +69,7 @@ class SliderCrank(Joint):
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=2e3)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FourBar(Joint):
     """The knee K: links A-R (thigh) and B-R (shank) meet the cylinder C-R at the rod eye R."""
 

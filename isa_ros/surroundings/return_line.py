@@ -5,8 +5,7 @@ Pressures are gauge; flows enter the line when positive. Equation C9. Neglected:
 tank.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import LITRE, LPM, MPA
@@ -15,12 +14,12 @@ import numpy as np
 SUPPLY_STEP = 1e-4  # s, step of the RK4 of supply and return line
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class HeldReturn(Parameters):
     """A return line at the constant pressure of the tank."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class VolumeReturn(Parameters):
     """A return line with a volume of oil, separated from the tank by a filter or a long hose."""
 

@@ -15,10 +15,10 @@ Neglected: length and resistance of the pressure line, heat.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from isa_ros.core.bound import Bound, Rebound
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import nested, parameter, Parameters
 from isa_ros.core.record import floats
 from isa_ros.core.saved_state import broken_number
@@ -41,7 +41,7 @@ import numpy as np
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ConstantSupply(Parameters):
     """An ideal supply: constant pressure at any flow."""
 

@@ -8,10 +8,10 @@ tick with the volumes drawn. Flows into the supply's node are positive. Equation
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from isa_ros.core.bound import Rebound
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel_function
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import Records, SUPPLY_REPLY
@@ -24,12 +24,12 @@ ANSWER = np.dtype(SUPPLY_REPLY.descr[:-1])
 """What a saved state has of a `SUPPLY_REPLY`: the heat is used up in its tick."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class HeldPort(Parameters):
     """Actuators hold the pressure of the tick's start."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class MovingPort(Parameters):
     """The pressure moves within a tick: actuators integrate the capacity of the line."""
 

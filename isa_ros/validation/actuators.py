@@ -6,13 +6,14 @@ the shipped sheets (`sheets`), so that a changed parameter moves ours and not th
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import kind_of
+from isa_ros.core.frozen import frozen
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load, Run
 from isa_ros.surroundings.circuits.sheet import CircuitSupply
@@ -22,7 +23,7 @@ SUPPLY_PRESSURE = 'supply.pressure_mpa'
 LOAD = 'load.'
 
 
-@dataclass(frozen=True)
+@frozen
 class Change:
     """Parameters multiplied by a factor, wherever a sheet, a load or the supply has them."""
 
@@ -50,7 +51,7 @@ def _number_at(roots: Mapping[str, Any], path: list[str]) -> float | None:
     return float(below) if isinstance(below, (int, float)) else None
 
 
-@dataclass(frozen=True)
+@frozen
 class CheckedActuators:
     """The shipped actuators with one change, or none."""
 

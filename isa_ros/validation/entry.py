@@ -10,11 +10,11 @@ regression check, also of a quantity that the paper speaks of, where the interva
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 import math
 import re
 import textwrap
 
+from isa_ros.core.frozen import frozen
 from isa_ros.paper.printed import Printed
 from matplotlib.figure import Figure
 
@@ -29,7 +29,7 @@ _LETTERS = 14       # of a title, to an inch of the figure
 _READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Entry:
     """
     One check; ``tolerance`` is the interval (lowest, highest) that ours must lie in.
@@ -131,7 +131,7 @@ class Entry:
         return AS_READ if self.is_read_otherwise else REACHED
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Observation:
     """A value of ours beside words of the paper that name no bar: it has no verdict."""
 
@@ -144,7 +144,7 @@ class Observation:
     """How it was observed."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Drawing:
     """A figure like one of the paper's; ``name`` is part of its file's name."""
 
@@ -159,7 +159,7 @@ class Drawing:
         return self.figure
 
 
-@dataclass(frozen=True)
+@frozen
 class Findings:
     """The results of one group."""
 
@@ -168,7 +168,7 @@ class Findings:
     observations: tuple[Observation, ...] = ()
 
 
-@dataclass(frozen=True)
+@frozen
 class CheckGroup:
     """A group of checks; ``check`` is a function of a module, so that a worker can call it."""
 

@@ -1,9 +1,10 @@
 """Run groups of checks in two worker processes and gather what they found."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.text.page import png
@@ -12,7 +13,7 @@ from isa_ros.validation.entry import CheckGroup, Entry, Observation
 from isa_ros.validation.workers import in_workers
 
 
-@dataclass(frozen=True)
+@frozen
 class Picture:
     """A drawn figure: PNG."""
 
@@ -21,7 +22,7 @@ class Picture:
     png: bytes
 
 
-@dataclass(frozen=True)
+@frozen
 class GroupResult:
     """The result of a group, as a worker process returns it."""
 

@@ -9,10 +9,10 @@ any, unless it is refused, is a hole in the validation: the command then exits w
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ParameterError, SimulationDiverged
 from isa_ros.text.progress import Progress
 from isa_ros.validation.actuators import Change, CheckedActuators, SUPPLY_PRESSURE
@@ -24,7 +24,7 @@ PLANT, LOOPS, RELIEF = ('behaviour', 'limits', 'cavities'), ('rotary_rig', 'isa_
 AMPLIFIER = ('current_loop',)
 
 
-@dataclass(frozen=True)
+@frozen
 class Perturbation:
     """A wrong parameter."""
 

@@ -6,12 +6,13 @@ gains but unscheduled, and by feedback linearisation. The smart manifold has the
 Table 4, the ISA v5 those retuned for the leg.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import step
 from isa_ros.analysis.response.sweep import FrequencySweep
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import replaced
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid
@@ -29,7 +30,7 @@ RISE_SPREAD = 20.0   # percent, allowed about the middle of the range
 LINEARISED_OVERSHOOT = 10.0     # percent
 
 
-@dataclass(frozen=True)
+@frozen
 class Subject:
     """One actuator of this study."""
 
@@ -41,7 +42,7 @@ class Subject:
 SUBJECTS = (Subject('isa_v5', RETUNED, 5.0), Subject('smart_manifold', TABLE_4, 0.3))
 
 
-@dataclass(frozen=True)
+@frozen
 class Sweeps:
     """The measures at each of `PLACES`, shape (n,)."""
 

@@ -5,13 +5,12 @@ The paper prints "a rise time of approximately 8 ms" and "50 Hz to 100 Hz" witho
 rise and which bandwidth; so all three rises, and both bandwidths, are measured and compared.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.step import step
 from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.signals.frequency import Response
+from isa_ros.core.frozen import frozen
 import numpy as np
 
 STEP_S = 0.2
@@ -20,7 +19,7 @@ QUARTER = -90.0     # deg
 LEVELS = {'10_90': (0.1, 0.9), '0_90': (0.0, 0.9), '0_100': (0.0, 1.0)}
 
 
-@dataclass(frozen=True)
+@frozen
 class TorqueStep:
     """A step of 10 % of the rating, blocked; NaN for what is not reached."""
 

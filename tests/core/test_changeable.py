@@ -1,16 +1,17 @@
 """Parameters that may change: found by their mark alone, checked, and without faults."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.core.changeable import changeables, sound, with_changes
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.errors import ConfigError, ParameterError
 import pytest
 from tests.sheets import actuator_sheet
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Channel(Parameters):
     """A sensor as somebody may add it."""
 
@@ -19,7 +20,7 @@ class Channel(Parameters):
     stuck: float = fault('1: its value stays', '1', is_whole=True, ge=0.0, le=1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Sheet(Parameters):
     """A sheet with two of them."""
 

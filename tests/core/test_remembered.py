@@ -1,13 +1,12 @@
 """Results that are kept: the same for the same values, and no others."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.remembered import MOST, remembered
 import pytest
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Disc(Parameters):
     """A set of one value."""
 

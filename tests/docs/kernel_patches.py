@@ -15,7 +15,7 @@ _CONDITION = '''    Condition(
 _MEASURED = '    values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)\n'
 _CHANNEL = """
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TachometerChannel(Channel):
 
     sigma: float = _sigma('m/s | rad/s', 1.0)
@@ -24,7 +24,7 @@ class TachometerChannel(Channel):
 
 
 CHANNEL_ERRORS = """
-_BRAKED = '''@dataclass(frozen=True, kw_only=True)
+_BRAKED = '''@frozen(kw_only=True)
 class Braked(Parameters):
     """A mass with a drag that grows with the square of its speed."""
 
@@ -38,15 +38,14 @@ LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked
 
 _BUFFER = '''"""A friction buffer at each end of the stroke, which drags at what moves outwards."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Buffer(Parameters):
     """Two buffers."""
 
@@ -71,15 +70,14 @@ def buffer_force(s, v, stroke, buffer):
 '''
 _PROPORTIONAL = '''"""Force block without memory: its output is K_p times the error."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, tunable
 from isa_ros.core.record import record
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Proportional(Parameters):
     """One gain."""
 

@@ -9,7 +9,6 @@ from tests.docs.patched_copy import files_of, names_of, PatchedCopy
 RAIL = textwrap.dedent('''\
     """A mass on a rail between two cylinders, with a spring."""
 
-    from dataclasses import dataclass
     from typing import Any, ClassVar
 
     from isa_ros.config.runs.body_config import BodyConfig, BodyInputs
@@ -17,6 +16,7 @@ RAIL = textwrap.dedent('''\
     from isa_ros.config.text.keys import Key, NAME, ParameterSet
     from isa_ros.config.text.sections import Place, Section
     from isa_ros.core.fields import Field, record_type, units_of
+    from isa_ros.core.frozen import frozen
     from isa_ros.core.parameter import parameter, Parameters
     from isa_ros.core.units import MILLI
     from isa_ros.surroundings.messages import JointStates
@@ -25,7 +25,7 @@ RAIL = textwrap.dedent('''\
     FIELDS = (Field('place', 'm', 'of the mass'), Field('speed', 'm/s', 'of the mass'))
 
 
-    @dataclass(frozen=True, kw_only=True)
+    @frozen(kw_only=True)
     class RailSheet(Parameters):
         """The mass, its spring and its start."""
 
@@ -66,7 +66,7 @@ RAIL = textwrap.dedent('''\
             self.sample[:] = np.frombuffer(snapshot, self.sample.dtype)
 
 
-    @dataclass(frozen=True, kw_only=True)
+    @frozen(kw_only=True)
     class RailConfig(BodyConfig):
         """A rail as a body of a run."""
 
@@ -144,7 +144,7 @@ def test_a_kind_of_bodies_is_a_class_and_a_row(copied: PatchedCopy) -> None:
     assert 'equal' in copied.isa('replay', 'rail')
 
 
-_FALLING = '''@dataclass(frozen=True, kw_only=True)
+_FALLING = '''@frozen(kw_only=True)
 class FallingSupply(Parameters):
     """A bottle without a pump: its pressure falls at a constant rate."""
 
@@ -179,8 +179,8 @@ def test_a_supply_is_two_files(copied: PatchedCopy) -> None:
         '                          dump_fields(sheet.dump, self._step), self._step * MPA *\n'
         "                          sheet.pressure_mpa / getattr(sheet, 'lasts_s', math.inf))],\n"
         '                        tick.IDEAL)\n')
-    copied.replace(path, 'from dataclasses import dataclass\n',
-                   'from dataclasses import dataclass\nimport math\n')
+    copied.replace(path, 'from functools import cached_property\n',
+                   'from functools import cached_property\nimport math\n')
     copied.replace(
         kernel, "    ('dump_valve', DUMP)])", "    ('dump_valve', DUMP), ('fall', 'f8')])")
     copied.replace(kernel, '        lower(ideal[0], state)\n',

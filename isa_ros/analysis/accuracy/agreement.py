@@ -9,7 +9,6 @@ tolerance of 1e-13 its solution differs by at most 4e-10 of each state's largest
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 import math
 
 from isa_ros.actuator import integration as kernels
@@ -18,6 +17,7 @@ from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.text.sections import Place
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
@@ -34,7 +34,7 @@ ROW = 1e-3             # s between the instants that are compared
 LOADS = ('wheel', 'blocked')
 
 
-@dataclass(frozen=True)
+@frozen
 class Piece:
     """
     Amplifier currents, each held for a millisecond; A.
@@ -56,7 +56,7 @@ PIECES = (
 """Opening one way; through null and the dual-gain point; through every limit of the plant."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Difference:
     """The largest departure of one state in one piece, relative to its largest value."""
 

@@ -9,7 +9,6 @@ itself makes of it are its warnings, trips and state, where a `SAMPLE` has them.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from isa_ros.analysis.faults.recorded import (
@@ -20,6 +19,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
 from isa_ros.core.fields import units_of
+from isa_ros.core.frozen import frozen
 from isa_ros.core.signals import CHANNELS, SAMPLE_FIELDS
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
@@ -63,7 +63,7 @@ class DeviceReport(NamedTuple):
     """From the begin of the fault to the first sample with it."""
 
 
-@dataclass(frozen=True)
+@frozen
 class FaultEffect:
     """The effect of one fault."""
 

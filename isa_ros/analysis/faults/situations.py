@@ -6,7 +6,6 @@ swings. The rig and the faults are those of `isa_ros.analysis.faults.measure`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from isa_ros.config.models.fault_catalogue import common_faults, named_fault, Na
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.scripting.run import load
@@ -57,7 +57,7 @@ the device, they are those of a load that nothing holds. Written by
 """
 
 
-@dataclass(frozen=True)
+@frozen
 class NoticedFault:
     """What is noticed of one fault in one situation."""
 

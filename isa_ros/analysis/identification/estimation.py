@@ -8,10 +8,10 @@ whose noise is not correlated with it and does not bias theta (errors in variabl
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 import math
 
 from isa_ros.analysis.identification.long_run import Estimator, newey_west
+from isa_ros.core.frozen import frozen
 import numpy as np
 from scipy.stats import t as student_t
 
@@ -21,7 +21,7 @@ _MAX_STEPS = 30
 _HALVINGS = 12
 
 
-@dataclass(frozen=True)
+@frozen
 class Linearised:
     """A model at one theta: residuals (n,), Jacobian and instruments (n, n_parameters)."""
 
@@ -33,7 +33,7 @@ class Linearised:
 Model = Callable[[np.ndarray], Linearised]
 
 
-@dataclass(frozen=True)
+@frozen
 class Box:
     """Bounds of the parameters, and the scale of their steps; each (n_parameters,)."""
 

@@ -13,11 +13,11 @@ a refill or the end of its sensor, and with a reversal, a collision or another s
 window or shortly before it.
 """
 
-from dataclasses import dataclass
 import math
 
 from isa_ros.analysis.identification.estimation import Box, half_widths, Linearised, solve
 from isa_ros.analysis.signals.recording import Recording, SHORTEST
+from isa_ros.core.frozen import frozen
 import numpy as np
 from scipy.signal import savgol_filter
 
@@ -43,7 +43,7 @@ _ALL = np.arange(N_PARAMETERS)
 _WITHOUT_SPEED = np.delete(_ALL, STRIBECK)
 
 
-@dataclass(frozen=True)
+@frozen
 class ForceBalance:
     """
     Estimates and half-widths of the 95 % intervals, (N_PARAMETERS,).

@@ -5,7 +5,7 @@ Each has its 95 % interval beside the value of the configuration in the bag. A p
 the data do not determine is refused with the reason.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 import math
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from isa_ros.analysis.identification.volume_balance import (
     C_LI, COMPLIANCE, CURVE, fit_balance, Q_0)
 from isa_ros.analysis.signals.recording import Recording, recording_of, SHORTEST
 from isa_ros.analysis.signals.signals import read_signals
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import LinearPlant, Plant
@@ -37,7 +38,7 @@ _SLOW = 'not in the data: no slow sliding that shows it'
 _CurveRow = tuple[str, str, int, float, float]
 
 
-@dataclass(frozen=True)
+@frozen
 class Estimate:
     """One parameter: its estimate and 95 % interval, or why there is none."""
 
@@ -57,7 +58,7 @@ class Estimate:
                 and self.low <= self.configured <= self.high)
 
 
-@dataclass(frozen=True)
+@frozen
 class Identified:
     """The estimates of actuators, and why there are none of the others."""
 

@@ -13,13 +13,13 @@ Left out: windows in which a chamber is near a relief, a refill or the end of it
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.analysis.identification.estimation import Box, half_widths, Linearised, solve
 from isa_ros.analysis.identification.flow_curves import FlowCurve
 from isa_ros.analysis.signals.recording import Recording, SHORTEST
+from isa_ros.core.frozen import frozen
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -34,7 +34,7 @@ NULL, Q_0, COMPLIANCE, C_LI, CURVE = range(5)
 _LINEAR = (Q_0, COMPLIANCE, C_LI)
 
 
-@dataclass(frozen=True)
+@frozen
 class Balance:
     """
     Estimates and half-widths of the 95 % intervals, (CURVE + curve.size,).

@@ -1,7 +1,6 @@
 """The drives of the bodies of a run over the ranges of their joints, and links in a plane."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 import math
 
 from isa_ros.config.robots.drives import Linkage
@@ -15,6 +14,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import kind_of
 from isa_ros.config.text.sections import Place
 from isa_ros.core.elementary import cos, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.robot.sheet import Points
 from isa_ros.surroundings.linkage import (
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 PARENT, CHILD, ROD = 'parent', 'child', 'rod'
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class PlaneLine:
     """A link or a cylinder, as points in the plane of the linkage."""
 
@@ -37,7 +37,7 @@ class PlaneLine:
     """m, (n, 2)."""
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class DrawnDrive:
     """A drive of a body, with equal ones of it."""
 

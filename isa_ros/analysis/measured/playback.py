@@ -1,7 +1,7 @@
 """The simulated machine, given the commands that a measured one received."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 import math
 from typing import Any
 import warnings
@@ -15,6 +15,7 @@ from isa_ros.analysis.signals.signals import Signal
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.controller import Setpoint
 from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
+from isa_ros.core.frozen import frozen
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
@@ -35,7 +36,7 @@ LONGEST_S = 600.0
 """Of a measurement that is simulated: minutes of computing."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Playback(Scenario):
     """A scenario that commands one actuator as a machine was, from the first tick after t = 0."""
 

@@ -11,7 +11,6 @@ are computed, and not given as results.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.at_rest import HUNTS, LoopAtRest, rest_of, ticks_at_rest
@@ -20,11 +19,12 @@ from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import Estimator, excitation, FrequencySweep
 from isa_ros.analysis.signals.frequency import (
     bandwidth, HALF_POWER, Margins, margins, Response, TRUSTED)
+from isa_ros.core.frozen import frozen
 from isa_ros.text.table import aligned, RIGHT
 import numpy as np
 
 
-@dataclass(frozen=True)
+@frozen
 class Bode:
     """A measured response, with bandwidth and margins from the same run."""
 

@@ -6,7 +6,7 @@ of the run file, or of the measured actuator.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, NamedTuple
 
 from isa_ros.config.models.catalogue import model_names
@@ -17,10 +17,11 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import changed
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Choice:
     """The rig that a user names; None takes the default."""
 

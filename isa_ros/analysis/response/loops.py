@@ -8,7 +8,7 @@ recorded in one run: reference R, output Y, error R - Y, and U, the output of it
 one inwards.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 from typing import Any
 
@@ -16,6 +16,7 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.config import ConfiguredActuator
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import Trace
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.return_spring import CoilSpring, spring_of
@@ -32,7 +33,7 @@ OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
 FORCE, TORQUE = 'force', 'torque'
 
 
-@dataclass(frozen=True)
+@frozen
 class UserUnit:
     """A unit for the user's values of a quantity; one unit is ``scale`` SI units."""
 
@@ -40,7 +41,7 @@ class UserUnit:
     scale: float = 1.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Loop:
     """One loop of one actuator; signals have the names of a `Trace`."""
 

@@ -1,7 +1,7 @@
 """One actuator on a bench, as a command names it: which, with which gains, load, place."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 import math
 from typing import Any
 
@@ -18,6 +18,7 @@ from isa_ros.config.text.changes import changed
 from isa_ros.config.text.parameter_sets import kind_of
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
@@ -30,7 +31,7 @@ REST_S = 0.3            # before anything is excited: several times the slowest 
 BLOCKED, MASS = 'blocked', 'mass'
 
 
-@dataclass(frozen=True)
+@frozen
 class Rig:
     """An actuator with one of its loops outermost, on a load of its own."""
 

@@ -1,11 +1,10 @@
 """`isa step`: the step response of one loop, its figures and its signals."""
 
-from dataclasses import dataclass
-
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 from isa_ros.loads.drop_rig import Wheel
 import numpy as np
@@ -17,7 +16,7 @@ MOVED = 0.01                # of the travel; an end that is nearer is where it s
 LOST = 0.5                  # error or ripple at the end over the step; above: it does not follow
 
 
-@dataclass(frozen=True)
+@frozen
 class StepResponse:
     """A measured step: signals over time from the step on, (n,), SI, and its figures."""
 

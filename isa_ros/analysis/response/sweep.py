@@ -6,11 +6,11 @@ the measured cycles fill whole periods of a grid: then the samples of a tick, an
 reference held over a tick, are orthogonal to the sine.
 """
 
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.analysis.signals.frequency import chirp_response, Response, stepped_response, Window
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 import numpy as np
 
@@ -27,7 +27,7 @@ LARGEST_SHARE = 0.4     # highest frequency over the rate at which a loop sample
 TWO_PI = 2.0 * math.pi
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FrequencySweep:
     """Frequencies of a measurement, Hz, and the kind of excitation."""
 
@@ -108,7 +108,7 @@ def chirp_band(sweep: FrequencySweep, rate: float, grid: float) -> ChirpBand:
         sweep.low / EDGE, min(EDGE * sweep.high, 0.5 * rate), SEGMENTS * segment, segment)
 
 
-@dataclass(frozen=True)
+@frozen
 class Estimator:
     """Estimator of the response from the samples of a run."""
 

@@ -6,13 +6,15 @@ page that gets its samples later.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Generic, TypeVar
+
+from isa_ros.core.frozen import frozen
 
 S = TypeVar('S')
 
 
-@dataclass(frozen=True)
+@frozen
 class Curve(Generic[S]):
     """One line of a panel."""
 
@@ -23,7 +25,7 @@ class Curve(Generic[S]):
     """Drawn dashed."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Panel(Generic[S]):
     """One diagram over time; all of its curves have one unit."""
 
@@ -41,7 +43,7 @@ class Panel(Generic[S]):
         return f'{self.title}, {self.unit}' if self.unit else self.title
 
 
-@dataclass(frozen=True)
+@frozen
 class Group(Generic[S]):
     """The panels of one actuator, body or circuit."""
 

@@ -8,10 +8,11 @@ ratio of spectra would be biased by noise that the controller feeds back.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 import math
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import AnalysisError
 import numpy as np
 
@@ -20,7 +21,7 @@ TRUSTED = 0.8        # least coherence of a point that counts: the rest has half
 SEGMENTS = 3         # least whole segments of a chirp: one alone is always coherent
 
 
-@dataclass(frozen=True)
+@frozen
 class Response:
     """
     A frequency response, each array of shape (n,), frequencies ascending.

@@ -1,11 +1,12 @@
 """One actuator's sensor signals from a bag, as arrays on one grid of time."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import plant_record
@@ -18,7 +19,7 @@ _SIGNALS = ('position', 'force', 'pressure_a', 'pressure_b', 'spool')
 _SUPPLY = 'supply_pressure'
 
 
-@dataclass(frozen=True)
+@frozen
 class Recording:
     """
     The sensor signals, each (n,), SI and gauge, ``step`` seconds apart.

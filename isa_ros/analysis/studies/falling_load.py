@@ -7,12 +7,12 @@ docs/falling_load.md.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 import warnings
 
 from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.scripting.run import load
 from isa_ros.text.page import Page, png_with_palette
@@ -66,7 +66,7 @@ the load comes down in jerks. A counterbalance valve throttles the same oil. Set
 and hoses are assumed."""
 
 
-@dataclass(frozen=True)
+@frozen
 class FallingLoad:
     """What one case does."""
 

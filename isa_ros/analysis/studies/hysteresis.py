@@ -6,7 +6,7 @@ The output is blocked, the loop is pushed to 10 % of its rating and back to 0, a
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
@@ -14,6 +14,7 @@ from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 from isa_ros.analysis.studies.measure import changed, RIPPLE_S, up_and_back
 from isa_ros.analysis.studies.own_study import OwnStudy
+from isa_ros.core.frozen import frozen
 from isa_ros.reu.block import Pid
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.progress import Progress, told
@@ -67,7 +68,7 @@ VALVES = (ValveCase(0.0, 0.0), ValveCase(0.5, 0.5), ValveCase(1.0, 1.0), ValveCa
           ValveCase(3.0, 3.0, 2.0))
 
 
-@dataclass(frozen=True)
+@frozen
 class Hunting:
     """A valve at one gain."""
 

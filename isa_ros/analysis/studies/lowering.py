@@ -7,12 +7,12 @@ as text, as JSON, and as the page docs/lowering.md.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 import warnings
 
 from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.reu.block import Pid
 from isa_ros.scripting.run import load
@@ -89,7 +89,7 @@ SHOWN = (LoweringCase(BY_POSITION, 1.5), LoweringCase(BY_POSITION, 10.0),
 """Those of the figure."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Lowering:
     """What one case does, SI, (n,)."""
 

@@ -10,7 +10,7 @@ The measures of a study at each value, on the bare actuator.
 A ripple is half of peak to peak; for one beyond `SMALL` of the step the frequency is given.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 from isa_ros.actuator.sheet import refuse_wiring
@@ -24,6 +24,7 @@ from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
 from isa_ros.config.runs.changed_parameters import Values, with_parameters
 from isa_ros.config.text.sections import Place
+from isa_ros.core.frozen import frozen
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.scenario.trot import smooth_step
@@ -45,7 +46,7 @@ SETPOINT_NS = 1_000_000     # between setpoints of a run
 GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the packaged trot
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class MeasuresAt:
     """The measures at one value, in the units of the page."""
 
@@ -62,7 +63,7 @@ class MeasuresAt:
     step: np.ndarray            # force from the step on, as a share of it, at `RATE_HZ`
 
 
-@dataclass(frozen=True)
+@frozen
 class StudyRig:
     """The actuator of a case as shipped, on both loads, and the trot it follows."""
 
@@ -89,7 +90,7 @@ class Benches:
         return self._of[key]
 
 
-@dataclass(frozen=True)
+@frozen
 class Studied:
     """A case, the value of its shipped actuator, and the outcomes at all values."""
 

@@ -1,10 +1,10 @@
 """A study with a rig of its own: as text, as JSON, and as a page."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from isa_ros.core.frozen import frozen
 from isa_ros.text.page import Page
 from isa_ros.text.progress import Progress
 from isa_ros.text.table import aligned, Cells, RIGHT
@@ -12,7 +12,7 @@ from isa_ros.text.table import aligned, Cells, RIGHT
 _Found = TypeVar('_Found')
 
 
-@dataclass(frozen=True)
+@frozen
 class OwnStudy(Generic[_Found]):
     """A study that no parameter of one actuator is varied for, with measures of its own."""
 

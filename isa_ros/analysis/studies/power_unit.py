@@ -7,7 +7,7 @@ peaks those of one tick.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from textwrap import fill
 from typing import Any, NamedTuple
 import warnings
@@ -15,6 +15,7 @@ import warnings
 from isa_ros.analysis.studies import warm_up
 from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.core.accounts import HELD, LEAKAGE, PUMP, SUPPLY_SHARES, THROTTLING
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import LPM, MPA
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
@@ -81,7 +82,7 @@ UNITS = (PowerUnit(3.5, 5000.0, 0.16), PowerUnit(3.5, 5000.0, 0.75), PowerUnit(4
          PowerUnit(7.0, 5000.0, 0.16), PowerUnit(7.0, 4000.0, 0.16))
 
 
-@dataclass(frozen=True)
+@frozen
 class SuppliedTrot:
     """The trot on one unit; SI, means and peaks as the page has them."""
 

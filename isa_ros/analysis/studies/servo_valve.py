@@ -7,7 +7,7 @@ valve without hysteresis. Frequencies are those of the spool behind the measured
 stepped sine of `isa bode`.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any, NamedTuple
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
@@ -15,6 +15,7 @@ from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.sweep import excitation, FrequencySweep
 from isa_ros.analysis.signals.signals import Signals, signals_of
 from isa_ros.analysis.studies.own_study import OwnStudy
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import LPM, MILLI, MPA, PERCENT
 from isa_ros.plant.spool import ResponseSpool
 from isa_ros.plant.valve_sheets import DataSheetValve
@@ -70,7 +71,7 @@ class Branch(NamedTuple):
     other: np.ndarray
 
 
-@dataclass(frozen=True)
+@frozen
 class SheetNumber:
     """One number of the sheet and of the bench."""
 
@@ -80,7 +81,7 @@ class SheetNumber:
     measured: float
 
 
-@dataclass(frozen=True)
+@frozen
 class SheetAndBench:
     """All numbers, and the loops of the figure."""
 

@@ -7,11 +7,12 @@ stiffness. A study varies one of them on both actuators, everything else as ship
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 import math
 
 from isa_ros.analysis.response.loops import UserUnit
 from isa_ros.analysis.studies import texts as study_texts
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
@@ -20,7 +21,7 @@ PRESETS = {'smart_manifold': 'table_4', 'isa_v5': 'default'}
 COULOMB_SHARE = 0.95    # of the stiction: the paper's 1.9 Nm of 2 Nm
 
 
-@dataclass(frozen=True)
+@frozen
 class Case:
     """
     One study on one actuator.
@@ -46,7 +47,7 @@ class Case:
         return {path: value * self.unit.scale * share for path, share in self.paths}
 
 
-@dataclass(frozen=True)
+@frozen
 class Study:
     """One parameter, its cases, and a text about the outcomes."""
 

@@ -12,7 +12,7 @@ The study is shown as text, as JSON, and as the page docs/temperature.md.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 import math
 from typing import Any
 
@@ -22,6 +22,7 @@ from isa_ros.analysis.studies.own_study import OwnStudy
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import build
+from isa_ros.core.frozen import frozen
 from isa_ros.core.oil_properties import softness, thickness
 from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.chambers import oil_stiffness
@@ -93,7 +94,7 @@ of 25 celsius, by the same equations: the leakage heats the oil within seconds a
 minutes, to at most 20.7 MPa/(rho c) = 12.2 K above the supply. Last columns: oil, celsius."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Effects:
     """The values that depend on the temperature."""
 
@@ -107,7 +108,7 @@ class Effects:
     """Spool position without current, m."""
 
 
-@dataclass(frozen=True)
+@frozen
 class TemperatureEffects:
     """The effects at one temperature (celsius)."""
 

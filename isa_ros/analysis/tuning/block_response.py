@@ -6,9 +6,10 @@ impulse of the reference and of the measured value, so that C_r and C_y are thos
 that runs in the REU, sampling and filters included.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.record import rows_of
 from isa_ros.reu.block import block_record, BLOCK_STATE, block_step, Pid
 from isa_ros.reu.compensation import Linear
@@ -53,7 +54,7 @@ def _transform(outputs: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     return found
 
 
-@dataclass(frozen=True)
+@frozen
 class ResponseParts:
     """
     The parts of C_r or C_y: C = d + K_f d_f + w (K_p (p + K_f p_f) + K_i (i + K_f i_f)).

@@ -11,11 +11,12 @@ both the one whose margins over the stroke are closest to the wanted one is take
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 from isa_ros.analysis.signals.frequency import bandwidth, margins, Response
 from isa_ros.analysis.tuning.block_response import ResponseParts
+from isa_ros.core.frozen import frozen
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, minimize
@@ -33,7 +34,7 @@ STEEP = 10.0            # cost of an error beyond what is tolerated, to that of 
 TOLERATED_DEG, TOLERATED_SHARE = 5.0, 0.1   # error of the margin; of the bandwidth as a share
 
 
-@dataclass(frozen=True)
+@frozen
 class WantedLoop:
     """The aim: phase margin of L in degrees, -3 dB of the closed loop in Hz."""
 
@@ -41,7 +42,7 @@ class WantedLoop:
     bandwidth: float
 
 
-@dataclass(frozen=True)
+@frozen
 class Plant:
     """The response P at one place, from the block's demand to its measured value."""
 
@@ -65,7 +66,7 @@ def plant_of(closed: Response, of_reference: np.ndarray, of_measured: np.ndarray
     return Plant(closed.frequency[kept], value[kept])
 
 
-@dataclass(frozen=True)
+@frozen
 class Gains:
     """K_f and the integral's corner (1/s) for the stroke, and K_p at each place."""
 
@@ -74,7 +75,7 @@ class Gains:
     kp: np.ndarray
 
 
-@dataclass(frozen=True)
+@frozen
 class Prediction:
     """The loop at one place with some gains."""
 

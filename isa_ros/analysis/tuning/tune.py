@@ -7,7 +7,7 @@ in the valve on the gains, so that the rounds are repeated until the measured lo
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 from isa_ros.analysis.response.bode import Bode, bode
@@ -16,6 +16,7 @@ from isa_ros.analysis.response.sweep import FrequencySweep, LARGEST_SHARE
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
     DENSE, designed, Gains, LoopAtPlace, plant_of, shares, WantedLoop)
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import replaced
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.plant.load_holding import NoneHolding
@@ -46,7 +47,7 @@ class NotReached(IsaError):
     exit_code = 1
 
 
-@dataclass(frozen=True)
+@frozen
 class Reached:
     """The measured loop at one place of the stroke."""
 
@@ -64,7 +65,7 @@ class Reached:
         return max(map(abs, shares(self.wanted, found, band)))
 
 
-@dataclass(frozen=True)
+@frozen
 class Tuned:
     """The gains that were found, and the loops measured with them."""
 

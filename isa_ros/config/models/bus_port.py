@@ -1,11 +1,10 @@
 """The connection of an actuator to the bus of `isa bus`, and what can be wrong with it."""
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, Parameters
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BusPort(Parameters):
     """Faults of a connection, each 1 while it lasts; a scenario sets them (docs/fieldbus.md)."""
 

@@ -1,13 +1,13 @@
 """The data that comes with the package: actuator models, legs, materials, gaits, wires."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from isa_ros.config.text.sections import (
     entry_at, merge, names_at, Place, refuse_unknown, Section, section_at, sourced, SourcedValue)
 from isa_ros.config.text.yaml_text import read, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives, listed
 from isa_ros.errors import ConfigError
 
@@ -21,7 +21,7 @@ DEFAULT_PRESET = 'default'
 _PAD_KEYS = ('stiffness', 'damping')  # of the material, used by a pad
 
 
-@dataclass(frozen=True)
+@frozen
 class Model:
     """One actuator model: its sheet without REU gains, gain sets, variants and own loads."""
 

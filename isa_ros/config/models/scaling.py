@@ -8,20 +8,21 @@ Nothing follows the supply of the run, its oil, its sensors or the rates of its 
 one of them is of the same actuator.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from isa_ros.actuator.scales import keys_of, SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section, SourcedValue
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 
 RATED = ('kind', 'drive', 'coil', 'spool', 'valve', 'return_spring')
 """Entries of the plant with rated data."""
 
 
-@dataclass(frozen=True)
+@frozen
 class Scaling:
     """A model as it is, and one with the rated data of an actuator made from it."""
 

@@ -6,20 +6,20 @@ cycles. Its frames must have left before the next cycle begins.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 import math
 
 from isa_ros.actuator.link import LinkSheet, NONE
 from isa_ros.config.models.catalogue import wire_section
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 
 _BITS_PER_MS = 1000.0   # of 1 Mbit/s
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Wire(Parameters):
     """Rate and frame sizes of one kind of wire."""
 

@@ -1,7 +1,6 @@
 """The points of a robot that touch the ground, in a run file."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.models.catalogue import material_section
@@ -13,6 +12,7 @@ from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, section_at
 from isa_ros.config.text.yaml_text import Tree as YamlTree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
@@ -21,7 +21,7 @@ from isa_ros.surroundings.bodies.robot.sheet import RobotContact, vector
 from isa_ros.surroundings.ground import Ground
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ContactConfig:
     """A point of a link that touches the ground."""
 

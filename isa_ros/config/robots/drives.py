@@ -1,7 +1,6 @@
 """The drives of a robot in a run file: which actuator moves which joint, by which linkage."""
 
 from collections.abc import Container, Mapping
-from dataclasses import dataclass
 import math
 from typing import Any
 
@@ -16,6 +15,7 @@ from isa_ros.config.text.parameter_sets import build_one_of, members
 from isa_ros.config.text.sections import (
     KIND_KEYS, Place, Section, section_at, SourcedValue, written)
 from isa_ros.config.text.yaml_text import Tree as YamlTree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check, numbers, parameter, Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
@@ -30,7 +30,7 @@ _RANGE_DIGITS = 9       # of the range of a joint in deg: 1e-9 deg
 _RANGE_ROUNDING = 1e-6  # deg or mm by which a range may exceed that of the URDF
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CylinderBetweenLinks(Parameters):
     """A cylinder between a point of one link and a point of another one."""
 
@@ -45,7 +45,7 @@ class CylinderBetweenLinks(Parameters):
 Linkage = OneJointLinkage | CylinderBetweenLinks
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DriveConfig:
     """A drive: a linkage of one joint, or a cylinder between two links."""
 

@@ -1,12 +1,12 @@
 """What a drive of a robot does over the range of its joint, and what it cannot do."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 import math
 
 from isa_ros.config.robots.drives import CylinderBetweenLinks, DriveConfig
 from isa_ros.config.robots.geometry import motion_of
 from isa_ros.config.text.sections import Place
+from isa_ros.core.frozen import frozen
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import JointLinkage, RobotDrive, RobotSheet
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Reach:
     """A drive over the range of the one joint that it moves."""
 

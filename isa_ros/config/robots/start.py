@@ -1,7 +1,6 @@
 """The pose of a robot at t = 0, in a run file."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
 
@@ -12,6 +11,7 @@ from isa_ros.config.robots.urdf_numbers import Pose, turned
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import InText, Key, Leaf, ParameterSet, ValueKind
 from isa_ros.config.text.sections import Place, section_at
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check, parameter, Parameters
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -22,7 +22,7 @@ import numpy as np
 _ROUNDING = 1e-9    # m
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotStartValues(Parameters):
     """Place and direction of the root at t = 0, and the time of its release."""
 

@@ -1,6 +1,5 @@
 """Keys of the tree of a robot in a resolved text, which so needs no URDF; every bit is kept."""
 
-from dataclasses import dataclass
 from itertools import chain
 import math
 from typing import Any
@@ -9,12 +8,13 @@ from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, Key, ParameterSet, TEXT, Value
 from isa_ros.config.text.sections import Place, section_at
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check, numbers, parameter, Parameters
 from isa_ros.surroundings.bodies.robot.sheet import (
     matrix, RobotFrame, RobotJoint, RobotLink, vector)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FramePlace(Parameters):
     """Place and rotation of a frame, m, in the axes of another one."""
 
@@ -24,7 +24,7 @@ class FramePlace(Parameters):
         'row by row; its axes are the columns', '1', least=9, most=9, ge=-1.001, le=1.001)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LinkValues(FramePlace):
     """A link, and the frame of its joint at coordinate 0 in its parent, with z as axis."""
 

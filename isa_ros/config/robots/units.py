@@ -1,13 +1,13 @@
 """Inertial units of a robot in a run file, in the axes of a link of its URDF."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from isa_ros.config.robots.frames import frame_named, in_link
 from isa_ros.config.robots.tree import RobotTree
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import FLAG, Key, ParameterSet, TEXT
 from isa_ros.config.text.sections import Place
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -15,7 +15,7 @@ from isa_ros.surroundings.bodies.robot.sheet import RobotUnit, vector
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet, UnitErrors
 
 
-@dataclass(frozen=True)
+@frozen
 class UnitConfig:
     """An inertial measurement unit of a robot, in the axes of a link of the URDF."""
 

@@ -5,7 +5,6 @@ Read are names, parents, places, axes, ranges and inertias; shapes, colours and 
 skipped.
 """
 
-from dataclasses import dataclass
 import math
 from pathlib import Path
 import re
@@ -14,6 +13,7 @@ from xml.etree.ElementTree import Element
 from isa_ros.config.robots.urdf_numbers import (
     ALONG_X, axis_of, Floats, number_of, origin_of, Pose)
 from isa_ros.config.robots.urdf_text import element_of
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 import numpy as np
@@ -24,7 +24,7 @@ _NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
 _IMPOSSIBLE = 1e-3      # by which a principal moment may exceed the sum of the two others
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class UrdfLink:
     """A link: its mass and inertia, 0 without ``<inertial>``."""
 
@@ -37,7 +37,7 @@ class UrdfLink:
     """About the centre of mass, kg m2, link axes, (3, 3)."""
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class UrdfJoint:
     """A joint: the frame of ``child`` in that of ``parent`` at coordinate 0."""
 
@@ -54,7 +54,7 @@ class UrdfJoint:
     high: float
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Urdf:
     """A URDF: every link but ``root`` is the child of one joint."""
 

@@ -1,6 +1,5 @@
 """One actuator of a run: its keys, and its sheet, made from a model or given as a whole."""
 
-from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
 
@@ -20,6 +19,7 @@ from isa_ros.config.text.keys import (
     ANY_NAME, choice_of, FLAG, InText, Key, Layer, NAMES, number, of_type, TEXT)
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, Section
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
@@ -33,7 +33,7 @@ from isa_ros.reu.wiring import mode_of
 _ROUNDING = 1e-12   # m or rad, of a position given in mm or deg
 
 
-@dataclass(frozen=True)
+@frozen
 class ActuatorConfig:
     """One actuator with its whole data sheet."""
 

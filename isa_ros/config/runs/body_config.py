@@ -5,7 +5,7 @@ A kind is one class, derived from `BodyConfig`, and one row in `isa_ros.config.r
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
@@ -16,6 +16,7 @@ from isa_ros.config.text.names import parted, placed
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body
@@ -48,7 +49,7 @@ class BodyInputs(NamedTuple):
     """Name of the run file, for messages."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BodyConfig:
     """A body that several actuators move; each kind replaces the methods that it needs."""
 

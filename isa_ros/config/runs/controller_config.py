@@ -1,7 +1,6 @@
 """Controllers of a run: nodes that every tick waits for, and those that the run itself calls."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from isa_ros.config.runs.external_config import imported_factory, is_path
@@ -10,6 +9,7 @@ from isa_ros.config.text.keys import ANY_NAME, Key, KeyDifference, Leaf, of_type
 from isa_ros.config.text.names import parted, refuse_bad_name
 from isa_ros.config.text.sections import names_at, Place, section_at
 from isa_ros.controller import Controller
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.surroundings.callers import cause_of
 
@@ -19,7 +19,7 @@ CLASS = 'class'
 """Key of a section."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ControllerConfig:
     """A controller that the run makes and calls: the section of its name."""
 

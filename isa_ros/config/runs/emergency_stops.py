@@ -11,7 +11,6 @@ Emergency stops of a run file: actuators that stop together, and the supplies th
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.runs.supplies import SupplyConfig
@@ -19,6 +18,7 @@ from isa_ros.config.text.key_tables import KeyTable, NamedSections
 from isa_ros.config.text.keys import choice_of, Key, NAMES
 from isa_ros.config.text.sections import Place
 from isa_ros.core.conditions import FAULTS
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import is_dumped
@@ -29,7 +29,7 @@ ALL = 'all'
 AT_REST, AT_ONCE, NEVER = 'at_rest', 'at_once', 'never'
 
 
-@dataclass(frozen=True)
+@frozen
 class EmergencyStopConfig:
     """One group of actuators that stop together."""
 

@@ -1,7 +1,6 @@
 """A body of any simulator: its actuators, and the Python that makes it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 import os
 import sys
@@ -17,6 +16,7 @@ from isa_ros.config.text.names import parted
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.changeable import sound
 from isa_ros.core.fields import Field
+from isa_ros.core.frozen import frozen
 from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
@@ -34,7 +34,7 @@ _USED: WeakSet[Any] = WeakSet()
 """What factories have returned."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ExternalConfig(BodyConfig):
     """
     A body that Python makes: ``body`` of `isa_ros.scripting.run.Run.simulate`, or ``class``.

@@ -1,7 +1,7 @@
 """A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 import math
 from pathlib import Path
@@ -20,6 +20,7 @@ from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
+from isa_ros.core.frozen import frozen
 from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -36,7 +37,7 @@ from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.surroundings.messages import BodyMessage
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegStart(Parameters):
     """Pose of the leg at t = 0, and the time at which its slider is released."""
 
@@ -57,7 +58,7 @@ class LegStart(Parameters):
         return haa, hfe, kfe
 
 
-@dataclass(frozen=True)
+@frozen
 class ImuConfig:
     """An inertial measurement unit of a leg."""
 
@@ -79,7 +80,7 @@ class _ImuKind(KeyTable):
 _IMU = _ImuKind((Key('sheet', ParameterSet(Imu), 'the unit'),))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegConfig(BodyConfig):
     """
     A leg as a body of a run.

@@ -10,7 +10,6 @@ The bag has what `record` says, whatever is published.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.runs.recording import replay_needs
@@ -18,11 +17,12 @@ from isa_ros.config.runs.topic_patterns import fitting, period_of, Periods, peri
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, Value
 from isa_ros.config.text.sections import Place
+from isa_ros.core.frozen import frozen
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
 
 
-@dataclass(frozen=True)
+@frozen
 class PublishConfig:
     """The topics that are not published at every tick."""
 

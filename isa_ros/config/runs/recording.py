@@ -11,7 +11,7 @@ Recorded topics of a run and the format of its files: the section `record` of a 
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -23,6 +23,7 @@ from isa_ros.config.text.keys import Key, ParameterSet, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, written
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.kept_ports import LOAD_PORT_TOPIC
 
@@ -30,7 +31,7 @@ _EVENTS = '/coordinator/events'
 _INPUTS = ('sent_setpoint', LOAD_PORT_TOPIC)
 
 
-@dataclass(frozen=True)
+@frozen
 class RecordConfig:
     """Storage, and the topics that are left out or decimated."""
 

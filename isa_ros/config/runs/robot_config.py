@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 import math
 from pathlib import Path
@@ -30,6 +30,7 @@ from isa_ros.config.text.keys import choice_of, InText, Key, Layer, TEXT, Value
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field
+from isa_ros.core.frozen import frozen
 from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -49,7 +50,7 @@ from isa_ros.surroundings.messages import BodyMessage
 FREE, FIXED = 'free', 'fixed'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotConfig(BodyConfig):
     """
     A robot as a body of a run.

@@ -1,7 +1,7 @@
 """The configuration of one run: its keys, every parameter filled in, immutable, loss-free text."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 import hashlib
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from isa_ros.config.text.keys import (
 from isa_ros.config.text.names import COORDINATOR, parted, refuse_bad_name
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import dump
+from isa_ros.core.frozen import frozen
 from isa_ros.core.noise import seed_of
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
@@ -41,7 +42,7 @@ ROBOTS = 'robots'
 """Key of the robots of a run file, which `isa_ros.config.runs.robots` resolves."""
 
 
-@dataclass(frozen=True)
+@frozen
 class RunConfig:
     """Everything that defines a run, except the setpoints."""
 

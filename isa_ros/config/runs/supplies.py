@@ -1,12 +1,13 @@
 """Supplies of a run file: ``supply`` for all actuators, or ``supplies`` by name."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from isa_ros.config.text.key_tables import KeyTable
 from isa_ros.config.text.keys import Key, ParameterSet, Value
 from isa_ros.config.text.sections import names_at, Place, Section
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
@@ -34,7 +35,7 @@ class Sampled(NamedTuple):
     """Signals that have a topic at every tick."""
 
 
-@dataclass(frozen=True)
+@frozen
 class SupplyConfig:
     """One supply, and the actuators that it feeds."""
 

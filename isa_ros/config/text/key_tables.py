@@ -1,7 +1,6 @@
 """Tables of keys: a section with known keys, with names of the user, or with a choice of kinds."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.text.keys import (
@@ -9,11 +8,12 @@ from isa_ros.config.text.keys import (
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import listed
 from isa_ros.errors import ConfigError
 
 
-@dataclass(frozen=True)
+@frozen
 class KeyTable(ValueKind):
     """The keys of a section, in the order in which they are written."""
 
@@ -83,7 +83,7 @@ class KeyTable(ValueKind):
                     own, f'{key}.{below.name}' if key else below.name, below)
 
 
-@dataclass(frozen=True)
+@frozen
 class NamedSections(ValueKind):
     """Sections by name, each of a configuration that has its name as a field."""
 
@@ -114,7 +114,7 @@ class NamedSections(ValueKind):
             yield from self.section.leaves(item, f'{key}.{item.name}', row)
 
 
-@dataclass(frozen=True)
+@frozen
 class OneOf(ValueKind):
     """One of several sections, selected by its key ``kind``; a configuration has its kind."""
 

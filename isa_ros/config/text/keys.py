@@ -8,7 +8,7 @@ Sections of several keys are kinds too: `isa_ros.config.text.key_tables`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from enum import Enum
 from typing import Any, get_type_hints, NamedTuple
 
@@ -17,6 +17,7 @@ from isa_ros.config.text.parameter_sets import as_tree, build_one_of, members
 from isa_ros.config.text.sections import (
     KIND_KEYS, names_at, Place, Section, section_at, written)
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.errors import ConfigError
 
@@ -116,7 +117,7 @@ TEXT = Value('text', lambda value, place: of_type(value, str, place))
 FLAG = Value('true or false', lambda value, place: of_type(value, bool, place))
 
 
-@dataclass(frozen=True)
+@frozen
 class ParameterSet(ValueKind):
     """A parameter set, or one of a union, selected by the kind in its section."""
 
@@ -144,7 +145,7 @@ class ParameterSet(ValueKind):
         return KeyDifference(f'{place / "kind"} is missing in the bag', True)
 
 
-@dataclass(frozen=True)
+@frozen
 class NamedSets(ParameterSet):
     """Parameter sets by name, each one of a union."""
 
@@ -217,7 +218,7 @@ class InText(Enum):
     ONLY = 'as before, and hardly in a file written by hand: never suggested for a wrong key'
 
 
-@dataclass(frozen=True)
+@frozen
 class Key:
     """One key of a section: one row of a `KeyTable`."""
 

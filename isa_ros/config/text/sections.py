@@ -6,12 +6,13 @@ A later layer (preset, run file) replaces single values of an earlier one (the m
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from isa_ros.actuator.scales import SCALES
 from isa_ros.config.text.yaml_text import Scalar, Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
@@ -19,7 +20,7 @@ _SOURCES = ('paper', 'derived', 'assumed', 'public model')
 KIND_KEYS = ('kind', 'linkage')  # keys that may hold the kind of a section
 
 
-@dataclass(frozen=True)
+@frozen
 class SourcedValue:
     """One value, or a list of them, where it was written (``file: dotted key``), its source."""
 
@@ -33,7 +34,7 @@ class SourcedValue:
 Section = dict[str, 'SourcedValue | Section']
 
 
-@dataclass(frozen=True)
+@frozen
 class Place:
     """A section of a file; messages about the section begin with its text."""
 

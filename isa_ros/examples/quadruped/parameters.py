@@ -1,12 +1,12 @@
 """Numbers of the trot: how the trunk is held, how feet step, and what is wanted over time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 import numpy as np
@@ -15,7 +15,7 @@ PROGRAM = 'program'
 """Key of the list of points."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TrotGains(Parameters):
     """Parameters of `Trot`; those of a law are per unit of mass or inertia of the robot."""
 
@@ -47,7 +47,7 @@ class TrotGains(Parameters):
         'that the forces of standing feet use', '1', absent=0.6, gt=0.0, le=5.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Point(Parameters):
     """What is wanted at one time; between two points it changes evenly."""
 

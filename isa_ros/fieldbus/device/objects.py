@@ -6,11 +6,11 @@ count times ``scale`` is SI.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import Enum
 import math
 import struct
 
+from isa_ros.core.frozen import frozen
 from isa_ros.fieldbus.device.abort import NO_OBJECT, NO_SUBINDEX, SdoAbort, TOO_LONG, TOO_SHORT
 
 Value = int | float | str
@@ -89,7 +89,7 @@ class DataType(Enum):
 _LARGEST_REAL32: float = struct.unpack('<f', b'\xff\xff\x7f\x7f')[0]
 
 
-@dataclass(frozen=True)
+@frozen
 class ObjectEntry:
     """One value of the dictionary."""
 
@@ -143,7 +143,7 @@ class ObjectCode(Enum):
     RECORD = 9
 
 
-@dataclass(frozen=True)
+@frozen
 class Object:
     """All entries of one index."""
 

@@ -10,9 +10,8 @@ Neglected: friction and mass of bladder or piston, the neck's resistance (a line
 one), the heat of the wall itself, and what nitrogen differs from an ideal gas.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.constants import ATMOSPHERE
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, name, parameter, Parameters
 from isa_ros.core.units import LITRE, MPA
@@ -29,7 +28,7 @@ GAS = np.dtype((np.record, [
     ('kappa', 'f8')]))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class AccumulatorPart(Parameters):
     """A gas accumulator on a manifold."""
 

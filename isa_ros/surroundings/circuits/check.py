@@ -5,8 +5,7 @@ Flow > 0 runs from the inlet to the outlet. Neglected: the mass of its poppet, a
 oil that flows back while it shuts.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.parameter import fault, name, parameter, Parameters
@@ -21,7 +20,7 @@ CHECK = np.dtype((np.record, [
     ('is_open', 'f8')]))    # 1: stuck open
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CheckPart(Parameters):
     """A check valve: oil flows from its inlet to its outlet only."""
 

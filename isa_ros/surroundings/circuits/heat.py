@@ -7,8 +7,7 @@ it is. Neglected: that oil which returns is warmer than the tank's, by at most P
 at 20.7 MPa; the heat of the gas in accumulators; the heat of coils.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.oil_properties import MineralOil, properties_record, softness, thickness
 from isa_ros.core.parameter import fault, parameter, Parameters
@@ -18,12 +17,12 @@ from isa_ros.surroundings.circuits.oil import CircuitOil, oil_at_sheet, OilNow
 import numpy as np
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class NoneHeat(Parameters):
     """Oil as the section `oil` has it, whatever the losses."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class MixedHeat(Parameters):
     """The oil of tank and circuit as one heat capacity, well mixed."""
 
@@ -51,7 +50,7 @@ class MixedHeat(Parameters):
 TankHeat = NoneHeat | MixedHeat
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CoolerPart(Parameters):
     """A cooler of the tank's oil, with a loop and a fan of its own."""
 

@@ -10,9 +10,9 @@ damping exactly. Equations C48 and C49.
 Neglected: friction that depends on frequency, bends, what the wall's mass and damping do.
 """
 
-from dataclasses import dataclass
 import math
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, name, nested, parameter, Parameters
 from isa_ros.core.units import LPM, MICRO, MILLI, MPA
@@ -29,14 +29,14 @@ _CONTRACTION = 0.62                 # of a jet through a torn wall
 _FASTEST_TEAR = 1e5                 # 1/s, of the pressure beside one
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BoreWall(Parameters):
     """A bore in a block: its wall does not give way."""
 
     KIND = 'rigid'
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TubeWall(Parameters):
     """A tube with a thin wall."""
 
@@ -45,7 +45,7 @@ class TubeWall(Parameters):
         'of the wall', 'Pa', absent=2.06e11, source='assumed, steel', ge=1e8, le=1e12)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class HoseWall(Parameters):
     """A hose, by the volumetric expansion of its data sheet."""
 
@@ -57,7 +57,7 @@ class HoseWall(Parameters):
 Wall = BoreWall | TubeWall | HoseWall
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LinePart(Parameters):
     """A tube or a hose between two manifolds, or to the tank."""
 

@@ -5,13 +5,12 @@ Actuators are fed by manifolds, and return their oil to the one that `returns_to
 parts stand between manifolds and the tank. Equation C45.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, name, nested, parameter, Parameters
 from isa_ros.surroundings.circuits.heat import NoneHeat, TankHeat
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ManifoldPart(Parameters):
     """Oil at one pressure, from which actuators may be fed."""
 
@@ -22,7 +21,7 @@ class ManifoldPart(Parameters):
         'flow to the outside per pressure', 'l/min/MPa', ge=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class TankPart(Parameters):
     """The tank, at a constant pressure; a circuit has one."""
 

@@ -6,13 +6,13 @@ compressibility and viscosity follow its temperature by T1 and T2, from the sect
 density does not.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CircuitOil(Parameters):
     """The oil of a circuit at its working temperature."""
 

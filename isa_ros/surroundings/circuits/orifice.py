@@ -7,10 +7,10 @@ takes the current of all switched valves: a dump valve opens, a block valve shut
 Neglected: forces of the flow on the poppet, and its mass.
 """
 
-from dataclasses import dataclass
 import math
 from typing import Any
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.parameter import fault, name, parameter, Parameters
@@ -49,7 +49,7 @@ def _leaking() -> Any:
     return fault('flow past its seat per pressure', 'l/min/MPa', ge=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SwitchedPart(Parameters):
     """A valve whose current the emergency stop takes."""
 
@@ -62,19 +62,19 @@ class SwitchedPart(Parameters):
     leakage_lpm_per_mpa: float = _leaking()
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BlockPart(SwitchedPart):
     """A valve that is open with current, and shuts at the emergency stop."""
 
     outlet: str = name('a manifold')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class DumpPart(SwitchedPart):
     """A valve that is shut with current, and opens at the emergency stop."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class UnloadingPart(Parameters):
     """A valve that lets a pump's flow to the tank while an accumulator is full."""
 

@@ -8,8 +8,7 @@ Neglected: its pulsation, and whether its inlet can follow; its leakage goes bac
 friction of its shaft heats the oil (T8), and changes nothing else.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, name, parameter, Parameters
 from isa_ros.core.units import LPM, MILLILITRE, MPA
@@ -27,7 +26,7 @@ PUMP = np.dtype((np.record, [
     ('is_stuck', 'f8')]))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PumpPart(Parameters):
     """A pump that reduces its flow at its set pressure, and at its power."""
 

@@ -6,8 +6,7 @@ Flow > 0 runs from the inlet to the outlet. Equation C50.
 Neglected: its dynamics; a piloted valve's lag is that of the lines around it.
 """
 
-from dataclasses import dataclass
-
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, name, parameter, Parameters
 from isa_ros.core.units import LPM, MPA
@@ -19,7 +18,7 @@ RELIEF = np.dtype((np.record, [
     ('p_open', 'f8')]))     # Pa
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class ReliefPart(Parameters):
     """A relief valve, which a spring holds shut."""
 
@@ -36,7 +35,7 @@ class ReliefPart(Parameters):
         'flow past its seat per pressure', 'l/min/MPa', ge=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FilterPart(Parameters):
     """A filter with a bypass, also one that gives a return line its back pressure."""
 

@@ -5,8 +5,9 @@ Manifolds and the tank are the places; every other part stands between two of th
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, named_sets, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
@@ -30,7 +31,7 @@ Between = (PumpPart | LinePart | ReliefPart | CheckPart | FilterPart | Unloading
 """Those with an inlet and an outlet."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SwitchedCurrent(Parameters):
     """The current of all pumps and valves of a circuit, which the emergency stop takes."""
 
@@ -38,7 +39,7 @@ class SwitchedCurrent(Parameters):
         '1: pumps and valves of the circuit have no current', '1', is_whole=True, ge=0.0, le=1.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class CircuitSupply(Parameters):
     """A circuit of named parts: pumps, lines, valves and accumulators between manifolds."""
 

@@ -1,25 +1,25 @@
 """Sections to checked parameter sets: refused values, with file and key."""
 
-from dataclasses import dataclass
 import math
 
 from hypothesis import given, strategies as st
 from isa_ros.config.text.parameter_sets import as_tree, build, build_one_of, kind_of, members
 from isa_ros.config.text.sections import merge, Place, written
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import choice, parameter, Parameters, SMALLEST
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
 import pytest
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class SmallDrive(Parameters):
     """A stand-in with one length."""
 
     bore_mm: float = parameter('bore', 'mm', gt=0.0, le=500.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class BigDrive(Parameters):
     """A stand-in that checks one value against another."""
 
@@ -33,7 +33,7 @@ class BigDrive(Parameters):
             raise ParameterError(f'high = {self.high:g} m, must be > low = {self.low:g} m')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Sheet(Parameters):
     """A stand-in with every kind of field."""
 

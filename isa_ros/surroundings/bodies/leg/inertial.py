@@ -17,9 +17,8 @@ Each axis has a constant error and white noise at its readings. Neglected: range
 bandwidth and misalignment.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.elementary import cos, sin
+from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
 from isa_ros.core.parameter import choice
@@ -34,7 +33,7 @@ LINKS = ('slider_link', 'hip', 'thigh', 'calf')
 """Links of the URDF, from the rail to the foot."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Imu(InertialUnitSheet):
     """An inertial measurement unit on a link of the leg."""
 

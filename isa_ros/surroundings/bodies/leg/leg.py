@@ -7,12 +7,12 @@ run's actuators; ``rows`` are the indices of those that drive HAA, HFE and KFE.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.fields import Field
+from isa_ros.core.frozen import frozen
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import restored_body, saved_body
 from isa_ros.core.signals import LOAD_REPLY
@@ -39,7 +39,7 @@ class InertialUnit(NamedTuple):
     """Of its noise."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegPose:
     """Pose of a leg at rest at t = 0: joint angles (rad) and the foot's height (m)."""
 

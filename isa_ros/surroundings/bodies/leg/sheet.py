@@ -6,9 +6,8 @@ a source begins with paper, derived, public model or assumed. Frames and signs a
 scripts/generate_leg.py.
 """
 
-from dataclasses import dataclass
-
 from isa_ros.core.constants import STANDARD_GRAVITY
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record, rows_of
 from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY
@@ -20,14 +19,14 @@ import numpy as np
 JOINTS = ('haa', 'hfe', 'kfe')
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegSlider(Parameters):
     """The vertical slider that carries the leg."""
 
     mass_kg: float = parameter('part of the slider that falls with the leg', 'kg', gt=0.0, le=1e3)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegLink(Parameters):
     """One rigid link with principal axes along those of its own frame."""
 
@@ -44,7 +43,7 @@ class LegLink(Parameters):
         'at the centre of mass, before the scale', 'kg m2', gt=0.0, le=100.0)
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RigidBodies(Parameters):
     """The rigid bodies of one leg."""
 
@@ -58,7 +57,7 @@ class RigidBodies(Parameters):
     calf: LegLink
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class LegSheet(Parameters):
     """The data sheet of one leg on its rig."""
 

@@ -12,10 +12,11 @@ The columns of a rotation are the axes of the inner frame in those of the outer 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 import math
 from typing import Literal, NamedTuple
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import fault, Parameters
 from isa_ros.surroundings.ground import Ground
 from isa_ros.surroundings.inertial_unit import UnitErrors
@@ -42,7 +43,7 @@ def matrix(rows: Sequence[Sequence[float]]) -> Matrix:
     return first, second, third
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotJoint:
     """The joint between a link and its parent; that of link 0 is its joint to the world."""
 
@@ -57,7 +58,7 @@ class RobotJoint:
     high: float = math.inf
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotLink:
     """A rigid link. Its frame is that of its joint, turned or moved by the coordinate."""
 
@@ -73,7 +74,7 @@ class RobotLink:
     """xx, yy, zz, xy, xz, yz about the centre of mass, kg m2, link axes; xy = -integral x y dm."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotFrame:
     """A frame with a name that is fixed to a link: of a URDF's link, or of a sensor."""
 
@@ -93,7 +94,7 @@ class MovingPart(NamedTuple):
     """Of the cell, N/m | Nm/rad."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@frozen(kw_only=True, eq=False)
 class JointLinkage:
     """A linkage that drives one joint: direct, slider-crank or four-bar (L3, L4, L5)."""
 
@@ -103,7 +104,7 @@ class JointLinkage:
     """`isa_ros.surroundings.linkage.LINKAGE`."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Points:
     """A cylinder between two points of two links; its lever acts on every joint between (L23)."""
 
@@ -116,7 +117,7 @@ class Points:
     """Distance of the points where the piston is at 0, m."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotDrive:
     """An actuator of the robot; a force > 0 pushes it out, joint torque = lever * force."""
 
@@ -125,7 +126,7 @@ class RobotDrive:
     linkage: JointLinkage | Points
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotContact:
     """A point of a link that may touch the ground, the plane z = 0."""
 
@@ -142,7 +143,7 @@ class RobotContact:
     """Whether the run ends where it touches."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotSheet:
     """A robot. Drives are in the order of its rows; sample and state in that of these tuples."""
 
@@ -195,7 +196,7 @@ class RobotSheet:
         return sorted(set(self.path(own.link_a)) ^ set(self.path(own.link_b)))
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotStart:
     """The robot at rest at t = 0; what is held there is let go at the release."""
 
@@ -211,7 +212,7 @@ class RobotStart:
     """Joints without a drive that are held until the release."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class Push(Parameters):
     """What pushes a robot's root from outside, at its origin along the world's axes."""
 

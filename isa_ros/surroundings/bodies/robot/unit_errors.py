@@ -5,8 +5,8 @@ A unit that can fail has its errors among the values of its robot, as `imus.NAME
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import Parameters, set_by_name
 from isa_ros.surroundings.bodies.robot.sheet import Push
 from isa_ros.surroundings.inertial_unit import UnitErrors
@@ -16,14 +16,14 @@ NEVER = np.iinfo(np.int64).max
 """A period that no run reaches, ns: a unit that is stuck reads no more."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class FailingUnits(Parameters):
     """What may change of a robot with a fixed root: a set of `UnitErrors` a unit."""
 
     imus: Parameters
 
 
-@dataclass(frozen=True, kw_only=True)
+@frozen(kw_only=True)
 class PushAndUnits(Push):
     """What may change of a robot with a free root and units that can fail."""
 
