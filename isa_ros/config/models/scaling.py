@@ -16,10 +16,14 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section, SourcedValue
 from isa_ros.core.frozen import frozen
+from isa_ros.core.remembered import remembered
 from isa_ros.errors import ConfigError
 
 RATED = ('kind', 'drive', 'coil', 'spool', 'valve', 'return_spring')
 """Entries of the plant with rated data."""
+
+
+_built = remembered(build)   # a model, for all runs with it
 
 
 @frozen
@@ -91,12 +95,14 @@ def scaled_sheet(
         As `isa_ros.config.text.parameter_sets.build`, or a scaled value is out of its range.
 
     """
-    base = build(ActuatorSheet, model, model_place)
+    base = _built(ActuatorSheet, model, model_place)
     own = base if section == model else build(
         ActuatorSheet, section, model_place, base.is_rotary)
     if own == base:
         return own, section
     rated = _rated(section, model)
+    if rated == model:      # all ratios are 1
+        return own, section
     for part in ('plant', 'reu'):
         scaling = Scaling(base, build(ActuatorSheet, rated, model_place))
         section, rated = ({**one, part: scaling.section(_below(one, part), place / part)}

@@ -14,6 +14,7 @@ from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_reading import run_of, run_of_text
+from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.parameter import Parameters
@@ -267,3 +268,29 @@ def test_a_spool_that_is_too_fast_is_refused_by_its_own_section() -> None:
             r"model's, by plant\.spool\) = 71084 rad/s, must be <= 50000 rad/s")):
         isa_ros.load('rig_cylinder').replace({'actuators.ram.parameters.plant.spool': {
             'kind': 'response', 'minus_90_deg_hz': 1000.0, 'minus_3_db_hz': 1000.0}})
+
+
+def built(monkeypatch, parameters: str) -> int:
+    """Return how many sheets are built for a run with another value, its model being known."""
+    own(parameters)
+    count = 0
+
+    def counting(cls: type[Parameters], *given: Any) -> Parameters:
+        nonlocal count
+        count += cls is ActuatorSheet
+        return build(cls, *given)
+    monkeypatch.setattr(scaling, 'build', counting)
+    own(parameters)
+    return count
+
+
+def test_what_no_ratio_follows_takes_one_sheet_and_a_bore_four(monkeypatch) -> None:
+    assert built(monkeypatch, '      plant: {friction: {viscous: 300.0}}\n') == 1
+    assert built(monkeypatch, OWN) == 4
+
+
+def test_a_known_model_hides_no_other_one() -> None:
+    """The model is kept by all of its values, which a preset changes."""
+    runs = [own(f'      plant: {{friction: {{viscous: 300.0}}}}\n    preset: {preset}\n')
+            for preset in ('default', 'table_4', 'default')]
+    assert runs[0].actuators == runs[2].actuators != runs[1].actuators
