@@ -80,12 +80,11 @@ def _values(names: Iterable[str]) -> Callable[[object], tuple[Any, ...]]:
 def _shown(own: Any) -> Callable[[Any], str]:
     """Return what shows an instance."""
     names = [each.name for each in fields(own) if each.repr]
-    values = _values(names)
+    values, shown = _values(names), ', '.join(f'{name}={{!r}}' for name in names)
 
     @recursive_repr()
     def __repr__(self: object) -> str:
-        shown = ', '.join(f'{name}={value!r}' for name, value in zip(names, values(self)))
-        return f'{type(self).__qualname__}({shown})'
+        return f'{type(self).__qualname__}({shown.format(*values(self))})'
     return __repr__
 
 
