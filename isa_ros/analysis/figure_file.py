@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from isa_ros.errors import ConfigError
-from matplotlib.figure import Figure
 
 
 def refuse_figure(path: Path | None) -> None:
@@ -18,6 +17,7 @@ def refuse_figure(path: Path | None) -> None:
     """
     if path is None:
         return
+    from matplotlib.figure import Figure    # without a figure it is never loaded
     known = sorted(Figure().canvas.get_supported_filetypes())
     if path.suffix[1:] not in known:
         raise ConfigError(f'--out {path}: must end in one of .{", .".join(known)}')

@@ -30,7 +30,7 @@ import sys
 from pathlib import Path
 class Forbidden:
     def find_spec(self, name, *others):
-        if name in ('numba', 'llvmlite'):
+        if name in ('numba', 'llvmlite', 'matplotlib'):
             raise AssertionError(f'{name} is loaded')
 sys.meta_path.insert(0, Forbidden())
 from isa_ros.core import kernel_library

@@ -2,18 +2,19 @@
 
 from argparse import Namespace
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 from isa_ros.analysis.figure_file import refuse_figure
 from isa_ros.analysis.response import bode as bodes, from_bag, step as steps
-from isa_ros.analysis.response.figures import bode_figure, step_figure
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.series import Member, members, refuse_beside_a_bag
 from isa_ros.analysis.response.sweep import FrequencySweep, LARGEST_SHARE
 from isa_ros.errors import ConfigError
 from isa_ros.text.json_file import write_wanted
-from matplotlib.figure import Figure
 import numpy as np
+
+if TYPE_CHECKING:   # without a figure Matplotlib is never loaded
+    from matplotlib.figure import Figure
 
 BANDS = {'position': (0.5, 50.0), 'force': (1.0, 200.0), 'pressure': (1.0, 200.0),
          'spool': (2.0, 500.0), 'current': (10.0, 1500.0)}
@@ -52,9 +53,12 @@ def bode(options: Namespace) -> bool:
         _print(title, bodes.table(measured), is_first=not responses)
         responses.append(measured)
         found.append(_setting(options, bench, measured, label) | _numbers(measured))
-    _write(options, found, lambda: bode_figure(
-        responses, [label for label, _ in benches], title if len(benches) == 1 else
-        f'{options.loop}: {_RESPONSES[options.of]}; {method}'))
+
+    def figure() -> 'Figure':
+        from isa_ros.analysis.response.figures import bode_figure
+        return bode_figure(responses, [label for label, _ in benches], title if len(benches) == 1
+                           else f'{options.loop}: {_RESPONSES[options.of]}; {method}')
+    _write(options, found, figure)
     return not any(measured.rest.hunts for measured in responses)
 
 
@@ -72,9 +76,12 @@ def step(options: Namespace) -> None:
         _print(title, steps.summary(measured), is_first=not responses)
         responses.append(measured)
         found.append(_setting(options, bench, measured, label) | _step_numbers(measured))
-    _write(options, found, lambda: step_figure(
-        responses, [label for label, _ in benches],
-        title if len(benches) == 1 else f'{options.loop}: step'))
+
+    def figure() -> 'Figure':
+        from isa_ros.analysis.response.figures import step_figure
+        return step_figure(responses, [label for label, _ in benches],
+                           title if len(benches) == 1 else f'{options.loop}: step')
+    _write(options, found, figure)
 
 
 def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:
@@ -140,7 +147,7 @@ def _step_numbers(measured: steps.StepResponse) -> dict[str, Any]:
 
 
 def _write(
-        options: Namespace, found: list[dict[str, Any]], figure: Callable[[], Figure]) -> None:
+        options: Namespace, found: list[dict[str, Any]], figure: Callable[[], 'Figure']) -> None:
     """Write the numbers of one response, or a list of those of several, and the figure."""
     write_wanted(found[0] if len(found) == 1 else {'responses': found}, options.json)
     if options.out is not None:

@@ -33,10 +33,12 @@ from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.calling import calling
 from isa_ros.tick.exchange import Rows, Transport
 from isa_ros.tick.in_process import InProcess
+from rcl_interfaces.msg import ParameterEvent
 import rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
+from rclpy.type_support import check_for_type_support
 from rclpy.utilities import try_shutdown
 
 _QUIET = {
@@ -59,6 +61,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
         processes = actuator_processes(
             session.run, request.config, request.scenario,
             session.run.names_here(request.elsewhere), request.all_changes)
+        check_for_type_support(ParameterEvent)  # loads what all messages need, before a fork
         with Children(
                 processes, request.namespace, _work if request.is_alone else None) as children:
             session.freeze_objects()

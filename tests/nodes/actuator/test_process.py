@@ -1,11 +1,13 @@
 """What a process with one actuator loads."""
 
 import json
+import os
 from pathlib import Path
 import subprocess
 import sys
 
 import pytest
+from tests.ros.domains import held_domain
 
 ROOT = Path(__file__).parents[3]
 OF_RUNS = (
@@ -22,14 +24,27 @@ from isa_ros.nodes.actuator import process
 SmartActuator(default_actuator('isa_v5', 'isa_v5'), DEFAULT_TIMING)
 print(json.dumps(sorted(sys.modules)))
 """
+FORKING = """
+import json, sys
+from pathlib import Path
+from isa_ros.config.paths import CONFIG, shipped
+from isa_ros.nodes.bringup import bringup
+from isa_ros.nodes.coordinator import runs
+from isa_ros.run.options import Request
+def start(*_):
+    print(json.dumps(sorted(sys.modules)))
+    sys.exit()
+runs.Children = start
+bringup(Request(config=shipped(CONFIG)['rig_linear.yaml'], out=Path('bag')))
+"""
 LOADING = 'import json, sys; import isa_ros.nodes.{}; print(json.dumps([*sys.modules]))'
 
 
-def loaded(program: str) -> set[str]:
+def loaded(program: str, folder: Path = ROOT) -> set[str]:
     """Return the modules that a program loads in a process of its own."""
     return set(json.loads(subprocess.run(
-        [sys.executable, '-c', program], cwd=ROOT, check=True, capture_output=True,
-        text=True).stdout))
+        [sys.executable, '-c', program], cwd=folder, check=True, capture_output=True,
+        text=True, env=os.environ | {'PYTHONPATH': str(ROOT)}).stdout))
 
 
 def test_an_actuator_alone_loads_nothing_of_runs():
@@ -50,6 +65,14 @@ def test_one_of_a_run_loads_that_too(module, expected):
 def test_what_forked_actuators_need_is_loaded_before():
     modules = loaded(LOADING.format('coordinator.runs'))
     assert {f'isa_ros.nodes.actuator.{name}' for name in ('in_lockstep', 'of_run')} <= modules
+
+
+@pytest.mark.ros
+def test_what_any_message_needs_is_loaded_before(monkeypatch, tmp_path):
+    """A parser of message files, 50 ms of each process."""
+    with held_domain(monkeypatch):
+        assert 'rosidl_generator_py' in loaded(FORKING, tmp_path)
+    assert 'rosidl_generator_py' not in loaded(LOADING.format('coordinator.runs'))
 
 
 def test_the_public_name_of_nodes_is_loaded_where_it_is_used():
