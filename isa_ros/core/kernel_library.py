@@ -13,6 +13,7 @@ import hashlib
 import json
 import os
 from pathlib import Path
+import struct
 from typing import Any, Protocol
 
 from isa_ros.core import kernel_key
@@ -28,7 +29,7 @@ SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRAC
 """Of numba, that change machine code: with one in the environment all kernels are compiled."""
 _RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
 _MAKERS = ('compiler', 'kinds', 'lowering', 'object_runtime', 'objects', 'shortcuts', 'words')
-_ROOM = (0,) * RESULT_WORDS
+_RESULT_BYTES = RESULT_WORDS * ctypes.sizeof(ctypes.c_int64)
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))
 """Flags of a processor whose machine code may be that of x86-64-v3, as Linux names them."""
@@ -44,6 +45,12 @@ class NamedKernel(Protocol):
         """Its name in a library, as `symbol_of` has it."""
 
 
+@cache
+def _table(n: int) -> tuple[type[ctypes.Array[ctypes.c_int64]], Callable[..., None]]:
+    """Return what makes a table of results and ``n`` words, and what puts the words into it."""
+    return ctypes.c_int64 * (RESULT_WORDS + n), struct.Struct(f'{n}q').pack_into
+
+
 class Call:
     """Machine code of a kernel for one combination of kinds of arguments."""
 
@@ -52,8 +59,10 @@ class Call:
 
     def __call__(self, arguments: tuple[Any, ...]) -> Any:
         """Run it and return what the kernel returns."""
-        words = (*_ROOM, *words_of(arguments))
-        table = (ctypes.c_int64 * len(words))(*words)
+        words = words_of(arguments)
+        made, put = _table(len(words))
+        table = made()
+        put(table, _RESULT_BYTES, *words)
         self._called(table)
         return None if self._result is None else value_of(self._result, iter(table))
 

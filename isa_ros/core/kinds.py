@@ -75,7 +75,7 @@ def kind_of(value: Any) -> Kind:
         return _of_record(value.dtype)
     elif isinstance(value, np.ndarray):
         flags = value.flags
-        return ArrayKind(value.dtype, value.ndim, not flags.c_contiguous, flags.writeable)
+        return _of_array(value.dtype, value.ndim, not flags.c_contiguous, flags.writeable)
     elif isinstance(value, tuple):
         return TupleKind(type(value), tuple(map(kind_of, value)))
     elif isinstance(value, np.number | np.bool_) and value.dtype.kind in 'biuf':
@@ -83,7 +83,7 @@ def kind_of(value: Any) -> Kind:
     raise UnknownKind(type(value).__name__)
 
 
-_of_record = cache(RecordKind)
+_of_record, _of_array = cache(RecordKind), cache(ArrayKind)
 
 
 @cache
@@ -96,17 +96,31 @@ def kind_text(kind: Kind) -> str:
 
 
 def words_of(value: Any) -> list[int]:
-    """Return the words of a value that has a kind."""
+    """Return the words of a value that has a kind, as whole numbers with sign."""
+    words: list[int] = []
+    _append(words, value)
+    return words
+
+
+def _append(words: list[int], value: Any) -> None:
+    """Append the words of a value; the most frequent kinds come first."""
     if isinstance(value, float):    # numpy's too
-        return [*_WORD.unpack(_FLOAT.pack(value))]
-    if isinstance(value, np.void):  # its interface lists all fields, and has a copy's address
-        return [np.frombuffer(value, np.uint8).ctypes.data]
-    if isinstance(value, np.ndarray):
-        words = [value.ctypes.data, *value.shape]
-        return words if value.flags.c_contiguous else [*words, *value.strides]
-    if isinstance(value, tuple):
-        return [word for part in value for word in words_of(part)]
-    return [*_WORD.unpack(_FLOAT.pack(value))] if isinstance(value, np.floating) else [int(value)]
+        words += _WORD.unpack(_FLOAT.pack(value))
+    elif isinstance(value, np.ndarray):
+        words.append(value.ctypes.data)
+        words += value.shape
+        if not value.flags.c_contiguous:
+            words += value.strides
+    elif isinstance(value, np.void):    # its interface lists all fields, and has a copy's address
+        words.append(np.frombuffer(value, np.uint8).ctypes.data)
+    elif isinstance(value, tuple):
+        for part in value:
+            _append(words, part)
+    elif isinstance(value, np.floating):
+        words += _WORD.unpack(_FLOAT.pack(value))
+    else:
+        number = int(value)
+        words.append(number if number < _LARGEST else number - 2 * _LARGEST)
 
 
 def value_of(kind: Kind, words: Iterator[int]) -> Any:

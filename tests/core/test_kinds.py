@@ -84,6 +84,9 @@ def test_values_come_back_from_their_words(kind, value):
 
 def test_large_numbers_without_sign_are_words_with_one():
     assert value_of(U8, iter([-1])) == 2 ** 64 - 1
+    assert words_of(np.uint64(2 ** 64 - 1)) == [-1] and words_of(np.uint64(7)) == [7]
+    assert words_of((np.uint64(2 ** 63), 2 ** 63 - 1, np.int8(-3))) == [-2 ** 63, 2 ** 63 - 1, -3]
+    assert words_of(np.float32(-0.5)) == words_of(-0.5) == words_of(np.float64(-0.5))
 
 
 @pytest.mark.parametrize(('kind', 'form'), [
