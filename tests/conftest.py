@@ -42,9 +42,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_collection() -> Generator[None, object, object]:
-    """Collect 11,000 tests in two thirds of the time."""
+def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
+    """Collect 12,000 tests in two thirds of the time; of all, workers rewrite each file once."""
     with uncollected():
+        config = session.config
+        if _is_worker(config) and config.args == config.getini('testpaths'):
+            from tests.scheduling import import_share
+            import_share(config)
         return (yield)
 
 

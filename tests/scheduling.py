@@ -1,4 +1,8 @@
-"""Which tests a worker of pytest-xdist gets, and in which order."""
+"""Which tests a worker of pytest-xdist gets, in which order, and how it finds them."""
+
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 from xdist.scheduler import LoadFileScheduling
@@ -37,3 +41,17 @@ def long_files_first(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: (
         not item.nodeid.startswith(LINTERS), item.path != compiling, needs_kernels(item),
         item.path not in long))
+
+
+def import_share(config: pytest.Config, folder: Path = Path(__file__).parent) -> None:
+    """
+    Import one of so many test files as there are workers, before all are collected.
+
+    To rewrite the asserts of a file takes longer than to collect its tests, and is kept. Workers
+    of a fresh clone that begin at the same file would each rewrite all of them.
+    """
+    worker, workers = config.workerinput['workerid'], config.workerinput['workercount']
+    for path in sorted(folder.rglob('test_*.py'))[int(worker.removeprefix('gw'))::workers]:
+        # What cannot be imported is reported, or skipped, when it is collected.
+        with suppress(Exception, pytest.skip.Exception):
+            import_module('.'.join(path.relative_to(folder.parent).with_suffix('').parts))
