@@ -53,5 +53,5 @@ def import_share(config: pytest.Config, folder: Path = Path(__file__).parent) ->
     worker, workers = config.workerinput['workerid'], config.workerinput['workercount']
     for path in sorted(folder.rglob('test_*.py'))[int(worker.removeprefix('gw'))::workers]:
         # What cannot be imported is reported, or skipped, when it is collected.
-        with suppress(Exception, pytest.skip.Exception):
+        with suppress(Exception, pytest.skip.Exception, pytest.fail.Exception):
             import_module('.'.join(path.relative_to(folder.parent).with_suffix('').parts))

@@ -34,12 +34,12 @@ class LoadSide:
 def fastest_rate(plant: np.record, load: LoadSide) -> float:
     """Return the largest magnitude of all eigenvalues, 1/s."""
     return max(float(np.abs(np.linalg.eigvals(matrix)).max())
-               for matrix in _matrices(plant, load))
+               for matrix in matrices(plant, load))
 
 
 def is_followed(plant: np.record, load: LoadSide) -> bool:
     """Return whether a step damps what the equations damp, in every linearised state."""
-    return all(_damps(matrix) for matrix in _matrices(plant, load))
+    return all(_damps(matrix) for matrix in matrices(plant, load))
 
 
 def _damps(matrix: NDArray[np.float64]) -> bool:
@@ -51,7 +51,7 @@ def _damps(matrix: NDArray[np.float64]) -> bool:
     return bool(((growth <= 1.0 + _ROUNDED) | (z.real > _ROUNDED)).all())
 
 
-class _Parts(SimpleNamespace):
+class Parts(SimpleNamespace):
     """Sections of a `PLANT` record, read at once: a record takes 3 us for each of its values."""
 
     def __init__(self, plant: np.record) -> None:
@@ -68,8 +68,13 @@ def _values(section: np.record) -> SimpleNamespace:
     return SimpleNamespace(**dict(zip(section.dtype.names or (), map(np.float64, section.item()))))
 
 
-def _matrices(plant: np.record, load: LoadSide) -> Iterator[NDArray[np.float64]]:
-    own = _Parts(plant)
+def matrices(plant: np.record, load: LoadSide) -> Iterator[NDArray[np.float64]]:
+    """
+    Yield those of the coil, the spool, and the actuator in each of its end stops.
+
+    There the valve is shut, then wide open; where a cushion traps oil that has two more.
+    """
+    own = Parts(plant)
     yield _coil(own.coil)
     yield _spool(own.spool)
     for place in (0.0, own.chambers.stroke):
@@ -102,7 +107,7 @@ def _spool(spool: SimpleNamespace) -> NDArray[np.float64]:
 
 
 def _actuator(
-        plant: _Parts, load: LoadSide, place: float,
+        plant: Parts, load: LoadSide, place: float,
         opening: tuple[float, float]) -> NDArray[np.float64]:
     """Return d(s, v, z, P_A, P_B, x, w)/dt in an end stop at ``place`` (M4, F3, C2)."""
     own, rubs, oil = plant.mechanics, plant.friction, plant.chambers
@@ -131,7 +136,7 @@ def _actuator(
 
 
 def _trapped(
-        plant: _Parts, load: LoadSide, place: float, is_open: bool,
+        plant: Parts, load: LoadSide, place: float, is_open: bool,
         cushion: SimpleNamespace) -> NDArray[np.float64]:
     """Return `_actuator` of shut lands with the pressure behind a spear as last state  (C30)."""
     oil, m = plant.chambers, plant.mechanics.inertia

@@ -39,6 +39,7 @@ def test_a_library_is_written(tmp_path, capsys, monkeypatch):
     out = tmp_path / 'made'
     arguments = ['export', 'rig_linear:ram', '--c', '--out', str(out), '--name', 'ram',
                  '--set', 'load.inertia=20', '--target', 'x86-64', '--load', 'own']
+    assert CACHE is not None
     for announced in ([ANNOUNCED], []):
         with locked(CACHE):     # another process may make the same
             assert main(arguments) == 0

@@ -23,9 +23,6 @@ RATED = ('kind', 'drive', 'coil', 'spool', 'valve', 'return_spring')
 """Entries of the plant with rated data."""
 
 
-_built = remembered(build)   # a model, for all runs with it
-
-
 @frozen
 class Scaling:
     """A model as it is, and one with the rated data of an actuator made from it."""
@@ -95,7 +92,7 @@ def scaled_sheet(
         As `isa_ros.config.text.parameter_sets.build`, or a scaled value is out of its range.
 
     """
-    base = _built(ActuatorSheet, model, model_place)
+    base = _model_sheet(model, model_place)
     own = base if section == model else build(
         ActuatorSheet, section, model_place, base.is_rotary)
     if own == base:
@@ -108,6 +105,12 @@ def scaled_sheet(
         section, rated = ({**one, part: scaling.section(_below(one, part), place / part)}
                           for one in (section, rated))
     return build(ActuatorSheet, section, model_place, own.is_rotary), section
+
+
+@remembered
+def _model_sheet(section: Section, place: Place) -> ActuatorSheet:
+    """Return the sheet of a model, the same for all runs with it."""
+    return build(ActuatorSheet, section, place)
 
 
 def _rated(section: Section, model: Section) -> Section:

@@ -290,7 +290,10 @@ def test_what_no_ratio_follows_takes_one_sheet_and_a_bore_four(monkeypatch) -> N
 
 
 def test_a_known_model_hides_no_other_one() -> None:
-    """The model is kept by all of its values, which a preset changes."""
-    runs = [own(f'      plant: {{friction: {{viscous: 300.0}}}}\n    preset: {preset}\n')
-            for preset in ('default', 'table_4', 'default')]
-    assert runs[0].actuators == runs[2].actuators != runs[1].actuators
+    """The model is kept by all of its values: a run without values of its own has its sheet."""
+    sheets = []
+    for preset in ('default', 'table_4', 'default'):
+        text = HEAD.replace('    parameters:', f'    preset: {preset}') % (14.0, 'isa_v5', 'mass')
+        sheets.append(sheet_of(run_of(parse(text, 'own.yaml'), Place('own.yaml'))[0]))
+    assert sheets[0] == sheets[2] != sheets[1]
+    assert sheets[1].reu.force.kp == 2.0e-8 < sheets[2].reu.force.kp    # type: ignore[union-attr]
