@@ -18,8 +18,6 @@ settings.load_profile('isa_ros')
 
 _CHANGING = ('PYTEST_CURRENT_TEST',)  # at every phase of a test
 _NO_DOMAIN = 'none: tests.ros.domains.held_domain'
-_OF_LARGE_KERNELS = tuple(f'tests/{folder}/' for folder in (
-    'actuator', 'analysis', 'oracle', 'plant', 'surroundings'))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -132,14 +130,3 @@ def kernels_compiled_once(request: pytest.FixtureRequest) -> None:
     from tests.scheduling import needs_kernels
     if needs_kernels(request.node):
         request.getfixturevalue('compiled_kernels')
-
-
-@pytest.fixture(scope='module', autouse=True)
-def large_kernels(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Have the large kernels of some folders, which no library has, lowered."""
-    if not request.node.nodeid.startswith(_OF_LARGE_KERNELS):
-        yield
-        return
-    from tests.lowered import large_kernels_lowered
-    with large_kernels_lowered():
-        yield

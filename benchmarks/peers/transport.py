@@ -14,9 +14,10 @@ from benchmarks.peers.worker import load_kernels
 from isa_ros.bench.child import environment
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.parent import PARENT_VARIABLE
 from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
-from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
+from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets
 from isa_ros.run.session import prepare, record, Report, Session

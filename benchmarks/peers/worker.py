@@ -11,7 +11,7 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.config.assembly import timing_of
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.processes.stopping import end_with_parent
+from isa_ros.core.parent import end_with_parent
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts

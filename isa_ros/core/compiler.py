@@ -4,7 +4,7 @@ from functools import cache
 from types import FunctionType
 from typing import Any
 
-from isa_ros.core.first_compilation import first_compilation
+from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import Kernel, kernel, KernelEntry
 from isa_ros.core.kernel_cache import cache_of
 from isa_ros.core.kinds import Kind, RESULT_WORDS
@@ -23,7 +23,7 @@ def _type_of_function(function: Any, context: Any) -> Any:
 
 def dispatcher_of(own: Kernel) -> Any:
     """Return what numba compiles of a kernel."""
-    first_compilation().begin()
+    compilations().begin()
     options = {name: value for name, value in own.targetoptions.items() if name != 'nopython'}
     compiled: Any = numba.njit(**options)(own.py_func)
     compiled._cache = cache_of(compiled, own.directory)

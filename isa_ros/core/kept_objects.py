@@ -4,20 +4,11 @@ from collections.abc import Mapping
 import hashlib
 
 from isa_ros.core.kept_files import read_kept, write_kept
-from isa_ros.core.kernel import KernelEntry
+from isa_ros.core.kernel import KernelEntry, symbols_of
 from isa_ros.core.kernel_cache import environment, say_not_kept
 from isa_ros.core.kernel_directory import CACHE, READ
 from isa_ros.core.objects import Target
-from isa_ros.core.value_text import UnknownValue
 from numba.core.registry import cpu_target
-
-
-def symbols_of(entries: Mapping[str, KernelEntry]) -> tuple[str, ...] | None:
-    """Return what entries are now, as libraries name them; None: that is not known."""
-    try:
-        return tuple(entry.symbol for entry in entries.values())
-    except UnknownValue:
-        return None
 
 
 def kept_name(entries: Mapping[str, KernelEntry], target: Target | None = None) -> str | None:

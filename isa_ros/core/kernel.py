@@ -2,10 +2,11 @@
 The decorators of what this package compiles.
 
 Importing a kernel takes no compiler: its machine code is looked up at the first call, in the
-libraries of kernels (`kernel_library`), and only a kernel that none of them has is compiled.
+libraries of kernels (`kernel_library`), and only a kernel that none of them has is compiled:
+a large one by a process of its own (`large_kernels`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, cached_property, update_wrapper
 import os
 from typing import Any, NamedTuple, TypeVar
@@ -13,6 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 from isa_ros.core.kernel_directory import CACHE, is_kept
 from isa_ros.core.kernel_library import address_in_library, call_in_library, symbol_of
 from isa_ros.core.kinds import Kind, kind_of, TupleKind, UnknownKind
+from isa_ros.core.value_text import UnknownValue
 
 _Function = TypeVar('_Function', bound=Callable[..., Any])
 
@@ -78,6 +80,10 @@ class Kernel:
     def _found(self, kinds: tuple[Kind, ...]) -> Callable[[tuple[Any, ...]], Any] | None:
         entry = KernelEntry(self, TupleKind(tuple, kinds), is_called=True)
         call = call_in_library(entry)
+        if call is None:
+            from isa_ros.core.large_kernels import made
+            own = made(entry)
+            call = None if own is None else own.call
         if call is not None:
             self._calls[kinds] = call
         return call
@@ -137,7 +143,8 @@ class KernelEntry(NamedTuple):
 
     def is_kept(self) -> bool:
         """Return whether it need not be compiled."""
-        return bool(address_in_library(self)) or is_kept(self.compiled)
+        from isa_ros.core.large_kernels import is_made
+        return bool(address_in_library(self)) or is_made(self) or is_kept(self.compiled)
 
     def address(self) -> int:
         """Return the address of the machine code; it is loaded, or compiled if need be."""
@@ -150,6 +157,10 @@ def entry_address(entry: KernelEntry) -> int:
     found = address_in_library(entry)
     if found:
         return found
+    from isa_ros.core.large_kernels import made
+    own = made(entry)
+    if own is not None:
+        return own.address
     from isa_ros.core.compiler import address_of
     return address_of(entry)
 
@@ -157,3 +168,11 @@ def entry_address(entry: KernelEntry) -> int:
 def entry_of(function: Any, kind: Kind) -> KernelEntry:
     """Return a kernel over a memory of a kind as an entry."""
     return KernelEntry(function, kind)
+
+
+def symbols_of(entries: Mapping[str, KernelEntry]) -> tuple[str, ...] | None:
+    """Return what entries are now, as libraries name them; None: that is not known."""
+    try:
+        return tuple(entry.symbol for entry in entries.values())
+    except UnknownValue:
+        return None

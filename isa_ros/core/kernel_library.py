@@ -103,9 +103,14 @@ def own_targets() -> list[str]:
     return ['x86-64-v3'] * (_V3 <= set(words)) + ['x86-64']
 
 
+def is_set_for_numba() -> bool:
+    """Return whether the environment has a setting for which numba has to compile all kernels."""
+    return any(f'NUMBA_{name}' in os.environ for name in SETTINGS)
+
+
 def library_path() -> Path | None:
     """Return the fastest library that runs on this processor, None if there is none."""
-    if any(f'NUMBA_{name}' in os.environ for name in SETTINGS):
+    if is_set_for_numba():
         return None
     paths = (SHIPPED / f'{target}.so' for target in own_targets())
     return next(filter(Path.exists, paths), None)

@@ -12,9 +12,9 @@ import time
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.names import parted, placed
 from isa_ros.core.frozen import frozen
+from isa_ros.core.parent import PARENT_VARIABLE
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
-from isa_ros.processes.stopping import PARENT_VARIABLE
 from isa_ros.run.options import all_changes, OPTION_OF
 
 MODULES = {

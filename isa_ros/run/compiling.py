@@ -7,7 +7,7 @@ from threading import Lock
 import time
 from typing import Any, TextIO
 
-from isa_ros.core.first_compilation import first_compilation
+from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.value_text import UnknownValue
@@ -86,8 +86,8 @@ def _of_tick() -> Sequence[Any]:
     module = sys.modules.get('isa_ros.actuator.ticking')
     if module is None:
         return []
-    tick = module.tick_kernel().compiled
-    return [] if tick.overloads or is_kept(tick) else [tick]
+    tick = module.tick_kernel()
+    return [] if tick.compiled.overloads or tick.is_kept() else [tick.compiled]
 
 
 def to_compile(*kernels: Any) -> int:
@@ -110,12 +110,13 @@ def reported_compilation(
     with ExitStack() as stack:
         def watch() -> None:
             stack.enter_context(_reported_to(report))
+            stack.enter_context(compilations().watched_by(report))
             if stream.isatty():
                 stack.enter_context(repeated(report.refresh))
         if 'numba' in sys.modules:
             watch()
         else:       # not before a kernel is compiled: loading it takes longer than a start
-            stack.enter_context(first_compilation().awaited_by(watch))
+            stack.enter_context(compilations().awaited_by(watch))
         yield
 
 

@@ -6,7 +6,7 @@ import sys
 import zipfile
 
 from isa_ros.cli.main import main
-from isa_ros.core import compiler, kept_objects
+from isa_ros.core import bitcode, compiler, kept_objects
 from isa_ros.core.kernel_directory import CACHE
 from isa_ros.export import kernels, library
 from isa_ros.export.library import names_of
@@ -133,7 +133,7 @@ def test_what_is_assumed_is_told_before_anything_is_compiled(tmp_path, capsys, m
 def test_a_process_that_makes_nothing_is_one_line(
         tmp_path, capsys, monkeypatch, ended, how, form):
     """Nothing is written or kept."""
-    monkeypatch.setattr(kernels, '_PROGRAM', (sys.executable, '-c', f'import os, sys; {ended}'))
+    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', f'import os, sys; {ended}'))
     monkeypatch.setattr(kept_objects, 'CACHE', tmp_path / 'kept')
     monkeypatch.setattr(kept_objects, 'READ', (tmp_path / 'kept',))
     assert main(['export', 'isa_v5', form, '--target', 'x86-64', '--out',

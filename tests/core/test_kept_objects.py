@@ -1,8 +1,8 @@
 """Kept objects: found again by all that they depend on, and by nothing less."""
 
 from isa_ros.core import kept_objects
-from isa_ros.core.kept_objects import keep, kept, kept_name, symbols_of
-from isa_ros.core.kernel import entry_of, kernel
+from isa_ros.core.kept_objects import keep, kept, kept_name
+from isa_ros.core.kernel import entry_of, kernel, symbols_of
 from isa_ros.core.kernel_cache import say_not_kept
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import TARGETS

@@ -10,13 +10,12 @@ import sys
 import time
 from typing import NamedTuple
 
-from isa_ros.core import compiler, kept_objects
+from isa_ros.core import bitcode, compiler, kept_objects, object_making
 from isa_ros.core.bound import Bound, table_of
 from isa_ros.core.elf import symbols
 from isa_ros.core.kernel import kernel
 from isa_ros.core.objects import library_of, own_target, TARGETS
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.export import kernels
 from isa_ros.export.exported import Called
 from isa_ros.export.kernels import are_kept, objects_of
 import numpy as np
@@ -79,7 +78,7 @@ def compiled(monkeypatch):
 
 def program(monkeypatch, text):
     """Let processes that make objects run a text of Python."""
-    monkeypatch.setattr(kernels, '_PROGRAM', (sys.executable, '-c', text))
+    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', text))
 
 
 def test_an_object_is_made_elsewhere_and_gives_the_bytes_of_this_process(tmp_path, compiled):
@@ -105,7 +104,7 @@ def test_it_is_made_once(directory, monkeypatch):
     assert are_kept([GROUP], OWN) and names_in(directory) == ['bitcode', OWN.name]
     program(monkeypatch, 'raise SystemExit(9)')
     with monkeypatch.context() as patch:
-        patch.setattr(kernels, 'object_of_bitcode', None)
+        patch.setattr(object_making, 'object_of_bitcode', None)
         assert objects_of([GROUP], OWN) == first
     path = next(directory.glob('*.o'))
     whole = path.read_bytes()
@@ -143,7 +142,7 @@ while len([n for n in os.listdir({str(tmp_path)!r}) if n.startswith('kernel_')])
     assert time.monotonic() < deadline
 sys.stdout.write('x' * 200_000 + names[0])
 """)
-    monkeypatch.setattr(kernels, 'object_of_bitcode', lambda code, names, target: code)
+    monkeypatch.setattr(object_making, 'object_of_bitcode', lambda code, names, target: code)
     found = objects_of([GROUP, (Called(take_sine, given()),)], OWN)
     assert [code[200_000:] for code in found] == [b'kernel_share', b'kernel_take_sine']
 
@@ -177,7 +176,7 @@ def test_a_process_that_fails_says_why(directory, monkeypatch):
     with pytest.raises(RunError, match='^machine code: its process [0-9]+ ended with exit code 1: '
                                        'ValueError: no way$'):
         objects_of([GROUP], OWN)
-    monkeypatch.setattr(kernels, '_PROGRAM', ('/none/such',))
+    monkeypatch.setattr(bitcode, '_PROGRAM', ('/none/such',))
     with pytest.raises(RunError, match='^machine code: no process can be started to make it, No '):
         objects_of([GROUP], OWN)
     assert not directory.exists()
@@ -185,7 +184,7 @@ def test_a_process_that_fails_says_why(directory, monkeypatch):
 
 def test_an_edit_meanwhile_is_noticed(directory, monkeypatch):
     """What the process would make is not what was asked for."""
-    monkeypatch.setattr(kernels, 'symbols_of', lambda entries: ('share_0123',))
+    monkeypatch.setattr(bitcode, 'symbols_of', lambda entries: ('share_0123',))
     with pytest.raises(RunError, match='exit code 1: a source was edited meanwhile$'):
         objects_of([GROUP], OWN)
     assert not directory.exists()
@@ -201,7 +200,7 @@ def test_what_a_module_prints_is_not_taken_for_bitcode(capsys):
 
 def test_what_the_process_warns_of_is_shown(monkeypatch, capsys):
     program(monkeypatch, 'import sys; print("careful", file=sys.stderr); print("code")')
-    monkeypatch.setattr(kernels, 'object_of_bitcode', lambda code, names, target: code)
+    monkeypatch.setattr(object_making, 'object_of_bitcode', lambda code, names, target: code)
     assert objects_of([GROUP], OWN) == (b'code\n',)
     assert capsys.readouterr().err == 'careful\n'
 
@@ -280,7 +279,7 @@ def test_the_process_takes_no_modules_of_the_folder_it_is_asked_in(tmp_path, mon
 
 
 def test_without_the_compiler_no_process_is_started(monkeypatch):
-    monkeypatch.setattr(kernels, 'IS_COMPILED', False)
+    monkeypatch.setattr(object_making, 'IS_COMPILED', False)
     monkeypatch.setattr(subprocess, 'Popen', None)
     with pytest.raises(ConfigError, match='^NUMBA_DISABLE_JIT is set, machine code needs'):
         objects_of([GROUP], OWN)

@@ -13,7 +13,7 @@ import time
 from typing import TypeVar
 
 import isa_ros
-from isa_ros.processes.stopping import PR_SET_PDEATHSIG
+from isa_ros.core.parent import PR_SET_PDEATHSIG
 
 ROOT = Path(isa_ros.__file__).parents[1]
 LEG = ROOT / 'config' / 'leg.yaml'

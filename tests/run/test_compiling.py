@@ -4,6 +4,7 @@ import io
 
 from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.config.assembly import group_of
+from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of
 from isa_ros.core.signals import LOAD_PORT
@@ -119,6 +120,7 @@ def test_a_tick_that_is_neither_loaded_nor_kept_is_in_the_total(monkeypatch):
     monkeypatch.undo()
     assert compiling._of_tick() == []       # another test has compiled it
     monkeypatch.setattr(compiling, 'is_kept', lambda kernel: False)
+    monkeypatch.setattr(KernelEntry, 'is_kept', lambda entry: False)
     tick = tick_kernel().compiled
     before = [own for own in kernels_of(tick) if not own.overloads]
     assert compiling._of_tick() == ([] if tick.overloads else [tick])

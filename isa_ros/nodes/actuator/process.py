@@ -5,6 +5,7 @@ import gc
 
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.parent import end_with_parent
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
@@ -14,7 +15,7 @@ from isa_ros.nodes.middleware.domain import Claim
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.ending import DONE, end_of
-from isa_ros.processes.stopping import end_with_parent, StopRequest
+from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.compiling import reported_compilation
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node

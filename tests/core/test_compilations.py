@@ -1,11 +1,11 @@
 """What waits for the first compilation is called once, and only while it waits."""
 
-from isa_ros.core.first_compilation import first_compilation, FirstCompilation
+from isa_ros.core.compilations import compilations, Compilations
 
 
 def test_what_waits_is_called_once_the_last_first() -> None:
     called: list[str] = []
-    own = FirstCompilation()
+    own = Compilations()
     with own.awaited_by(lambda: called.append('outer')), \
             own.awaited_by(lambda: called.append('inner')):
         assert called == []
@@ -17,7 +17,7 @@ def test_what_waits_is_called_once_the_last_first() -> None:
 def test_what_has_waited_in_vain_is_not_called() -> None:
     """Also where the context ends with an error; another that waits stays."""
     called: list[str] = []
-    own = FirstCompilation()
+    own = Compilations()
     with own.awaited_by(lambda: called.append('stays')):
         try:
             with own.awaited_by(lambda: called.append('gone')):
@@ -28,4 +28,4 @@ def test_what_has_waited_in_vain_is_not_called() -> None:
 
 
 def test_a_process_has_one() -> None:
-    assert first_compilation() is first_compilation()
+    assert compilations() is compilations()

@@ -1,0 +1,119 @@
+"""
+Bitcode of entries, made by a process of its own.
+
+Numba compiles none of them in this one: that one lowers them (`isa_ros.core.lowering`), and so can
+run none.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, ExitStack
+import os
+from pathlib import Path
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+from typing import BinaryIO, IO, NamedTuple, TextIO
+
+from isa_ros.core.kernel import KernelEntry, symbols_of
+from isa_ros.core.parent import PARENT_VARIABLE
+from isa_ros.errors import RunError
+
+_ROOT = Path(__file__).parents[2]
+_PROGRAM = (sys.executable, '-m', 'isa_ros.core.lowering_process')
+
+
+class BitcodeOrder(NamedTuple):
+    """What a process makes bitcode of."""
+
+    entries: Mapping[str, KernelEntry]
+    """By exported name."""
+    symbols: tuple[str, ...] | None
+    """What they were when they were asked for."""
+    told: int
+    """File descriptor for the name of each kernel as it begins, and an empty line as it ends."""
+
+
+class Lowering:
+    """A process that makes bitcode."""
+
+    def __init__(self, process: 'subprocess.Popen[bytes]', told: TextIO, code: BinaryIO,
+                 errors: BinaryIO) -> None:
+        self._process, self._told, self._code, self._errors = process, told, code, errors
+
+    def bitcode(self, tell: Callable[[str], object] = str) -> bytes:
+        """
+        Return the bitcode when it is made; ``tell`` is called with each line told meanwhile.
+
+        Raises
+        ------
+        RunError
+            The process was ended, or its sources are no longer those of this one.
+
+        """
+        for line in self._told:
+            tell(line.rstrip('\n'))
+        code = self._process.wait()
+        said = _read(self._errors).decode(errors='replace')
+        last = said.strip().rpartition('\n')[2]
+        if code:
+            how = (f'was ended by {signal.Signals(-code).name}' if code < 0
+                   else f'ended with exit code {code}: {last}')
+            raise RunError(f'machine code: its process {self._process.pid} {how}')
+        sys.stderr.write(said)
+        return _read(self._code)
+
+
+def _read(file: BinaryIO) -> bytes:
+    """Return all that another process has written."""
+    file.seek(0)
+    return file.read()
+
+
+@contextmanager
+def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[Lowering]:
+    """
+    Start a process that lowers entries by exported names; it does not outlive the context.
+
+    Nor does it outlive this process. Modules of the folder in which this one runs are not taken.
+
+    Raises
+    ------
+    RunError
+        None can be started.
+
+    """
+    with ExitStack() as stack:
+        asked, code, errors = (
+            stack.enter_context(tempfile.TemporaryFile()) for _ in range(3))
+        told, tells = os.pipe()
+        lines = stack.enter_context(os.fdopen(told))
+        try:
+            order = BitcodeOrder(entries, symbols_of(entries), tells)
+            process = _started(order, asked, code, errors)
+        finally:
+            os.close(tells)
+        with process:
+            try:
+                yield Lowering(process, lines, code, errors)
+            finally:
+                process.kill()
+
+
+def _started(order: BitcodeOrder, asked: IO[bytes], code: IO[bytes],
+             errors: IO[bytes]) -> 'subprocess.Popen[bytes]':
+    """Start the process of an order; raises as `lowering`."""
+    asked.write(pickle.dumps(order))
+    asked.seek(0)
+    environment = os.environ | {
+        PARENT_VARIABLE: str(os.getpid()),
+        'PYTHONPATH': os.pathsep.join(
+            [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])}
+    try:
+        return subprocess.Popen(
+            _PROGRAM, env=environment, cwd=_ROOT, stdin=asked, stdout=code, stderr=errors,
+            pass_fds=(order.told,))     # elsewhere are modules of the user
+    except OSError as error:
+        raise RunError('machine code: no process can be started to make it, '
+                       f'{error.strerror or error}') from error

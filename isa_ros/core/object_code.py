@@ -1,0 +1,30 @@
+"""The machine code of an object, run in this process: it takes no linker, and no numba."""
+
+import ctypes
+import json
+
+from isa_ros.core.kernel_library import Call, result_symbol
+from isa_ros.core.kinds import kind_of_form
+import llvmlite.binding as llvm
+
+
+class ObjectCode:
+    """An object of `isa_ros.core.objects`; it stays in memory as long as this does."""
+
+    def __init__(self, code: bytes) -> None:
+        llvm.initialize_native_target()
+        llvm.initialize_native_asmprinter()
+        self._engine = llvm.create_mcjit_compiler(
+            llvm.parse_assembly(''), llvm.Target.from_default_triple().create_target_machine())
+        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        self._engine.finalize_object()
+
+    def address(self, symbol: str) -> int:
+        """Return the address of the machine code of an entry."""
+        found: int = self._engine.get_function_address(symbol)
+        return found
+
+    def call(self, symbol: str) -> Call:
+        """Return what calls a called entry with its arguments."""
+        form = ctypes.string_at(self._engine.get_global_value_address(result_symbol(symbol)))
+        return Call(self.address(symbol), kind_of_form(json.loads(form)))

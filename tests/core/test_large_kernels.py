@@ -1,0 +1,186 @@
+"""Large kernels that no library has are lowered by a process, once, and give the same bytes."""
+
+import math
+import sys
+from typing import NamedTuple
+
+from isa_ros.core import bitcode, kept_objects, kernel as kernels, kernel_key, large_kernels
+from isa_ros.core.bound import Bound
+from isa_ros.core.compilations import compilations
+from isa_ros.core.kernel import entry_address, kernel, KernelEntry
+from isa_ros.core.kinds import kind_of, TupleKind
+from isa_ros.core.large_kernels import is_large, is_made, made
+import numpy as np
+import pytest
+
+
+class Numbers(NamedTuple):
+    """A memory."""
+
+    numbers: np.ndarray
+
+
+@kernel
+def third(x):
+    return x / 3.0
+
+
+def fill(x, table):
+    """Fill a table with thirds; return the last one and how many."""
+    for k in range(len(table)):
+        table[k] = third(x + k)
+    return table[-1], len(table)
+
+
+@kernel
+def lowered_thirds(x, table):
+    """As `fill`."""
+    for k in range(len(table)):
+        table[k] = third(x + k)
+    return table[-1], len(table)
+
+
+@kernel
+def compiled_thirds(x, table):
+    """As `fill`."""
+    for k in range(len(table)):
+        table[k] = third(x + k)
+    return table[-1], len(table)
+
+
+@kernel
+def bound_thirds(own):
+    """Divide numbers by three; return how many."""
+    for k in range(len(own.numbers)):
+        own.numbers[k] = third(own.numbers[k])
+    return len(own.numbers)
+
+
+@kernel
+def sine(x):
+    """Call a function that no object has."""
+    return math.sin(third(x))
+
+
+@pytest.fixture(autouse=True)
+def directory(tmp_path, monkeypatch):
+    """Return an empty directory in which objects are kept; kernels of two are large."""
+    own = tmp_path / 'kept'
+    monkeypatch.setattr(kept_objects, 'CACHE', own)
+    monkeypatch.setattr(kept_objects, 'READ', (own,))
+    monkeypatch.setattr(large_kernels, 'MANY', 2)
+    monkeypatch.setattr(large_kernels, '_PACKAGE', 'tests')
+    made.cache_clear()
+    return own
+
+
+def no_process(monkeypatch):
+    """Let a process that makes bitcode fail."""
+    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', 'raise SystemExit(9)'))
+
+
+def check(own):
+    """Compare with Python what a kernel does with two arguments."""
+    table, expected = np.zeros(5), np.zeros(5)
+    for x in (1.7, -0.3):
+        assert own(x, table) == fill(x, expected)
+        assert table.tobytes() == expected.tobytes() != bytes(40)
+
+
+def test_a_kernel_of_many_takes_no_compiler_here(directory):
+    check(lowered_thirds)
+    assert not lowered_thirds.overloads
+    assert sorted(path.suffix for path in directory.iterdir()) == ['.bc', '.o']
+
+
+def test_one_of_few_is_compiled_here(monkeypatch, directory):
+    monkeypatch.setattr(large_kernels, 'MANY', 3)
+    check(compiled_thirds)
+    assert compiled_thirds.overloads and not directory.exists()
+
+
+def entry():
+    """Return an entry over a memory of five numbers."""
+    return KernelEntry(bound_thirds, kind_of(Numbers(np.zeros(5))))
+
+
+def test_a_bound_kernel_is_made_once(monkeypatch, directory):
+    """And loaded again by the next start; numba keeps nothing of it."""
+    monkeypatch.setattr(kernels, 'is_kept', lambda kernel: False)
+    assert not is_made(entry()) and not entry().is_kept()
+    loaded = []
+    for _ in range(2):
+        own = Numbers(np.arange(5.0))
+        assert Bound(bound_thirds, own).run() == 5
+        assert list(own.numbers) == [x / 3.0 for x in range(5)]
+        loaded.append(made(entry()))
+        assert is_made(entry()) and entry().is_kept()
+        no_process(monkeypatch)     # from now on
+        made.cache_clear()
+        entry_address.cache_clear()
+    assert loaded[0] is not loaded[1] and None not in loaded
+    for path in directory.iterdir():
+        path.unlink()
+    assert not is_made(entry()) and made(entry()) is None
+
+
+class Noting:
+    """Notes what it is told."""
+
+    def __init__(self):
+        self.told = []
+
+    def start(self, kernel):
+        """Note it."""
+        self.told.append(kernel)
+
+    def end(self):
+        """Note an end."""
+        self.told.append('end')
+
+
+def test_who_watches_is_told_of_each_kernel():
+    own, began = Noting(), []
+    with compilations().watched_by(own), compilations().awaited_by(lambda: began.append(1)):
+        assert made(entry()) is not None
+    assert began == [1]
+    assert own.told == [bound_thirds, bound_thirds, third, 'end', 'end', 'end']
+
+
+def test_a_process_that_ends_leaves_it_to_numba(monkeypatch, directory):
+    """Who watches is told that all ends."""
+    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', """
+import os, pickle, sys
+told = pickle.load(sys.stdin.buffer).told
+os.write(told, b'entry\\nthird\\n')
+os.kill(os.getpid(), 9)
+"""))
+    entry_address.cache_clear()
+    own, numbers = Noting(), Numbers(np.array([1.0, 2.0]))
+    with compilations().watched_by(own):
+        assert Bound(bound_thirds, numbers).run() == 2
+    assert list(numbers.numbers) == [1.0 / 3.0, 2.0 / 3.0]
+    assert own.told == [bound_thirds, third, 'end', 'end'] and not directory.exists()
+
+
+def test_what_no_object_can_have_is_left_to_numba(directory):
+    assert sine(1.2) == math.sin(1.2 / 3.0)
+    assert [path.suffix for path in directory.iterdir()] == ['.bc']
+
+
+def test_what_is_large(monkeypatch):
+    """Kernels of this package, unless a setting or a value without a text is numba's."""
+    from isa_ros.actuator.integration import rk4_steps
+    step = KernelEntry(rk4_steps, TupleKind(tuple, ()), True)
+    assert not is_large(step) and is_large(entry())
+    with monkeypatch.context() as patch:
+        patch.setattr(large_kernels, '_PACKAGE', 'isa_ros')
+        patch.setattr(large_kernels, 'MANY', 40)
+        assert is_large(step) and not is_large(entry())
+        patch.setenv('NUMBA_OPT', '3')
+        assert not is_large(step) and not is_made(step) and made(step) is None
+
+    def refuse(*given):
+        raise kernel_key.UnknownValue('a module')
+    monkeypatch.setattr(large_kernels, 'kernels_of', refuse)
+    assert not is_large(entry())
