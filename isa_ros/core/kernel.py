@@ -12,7 +12,8 @@ import os
 from typing import Any, NamedTuple, TypeVar
 
 from isa_ros.core.kernel_directory import CACHE, is_kept
-from isa_ros.core.kernel_library import address_in_library, call_in_library, symbol_of
+from isa_ros.core.kernel_library import (
+    address_in_library, call_in_library, kept_symbol_of, symbol_of)
 from isa_ros.core.kinds import Kind, kind_of, TupleKind, UnknownKind
 from isa_ros.core.value_text import UnknownValue
 
@@ -133,7 +134,16 @@ class KernelEntry(NamedTuple):
     @property
     def symbol(self) -> str:
         """Its name in a library."""
-        return symbol_of(self.kernel, 'called' if self.is_called else 'bound', self.kind)
+        return symbol_of(self.kernel, self._form, self.kind)
+
+    @property
+    def kept_symbol(self) -> str:
+        """Its name where it is kept: other words around the same code leave it as it is."""
+        return kept_symbol_of(self.kernel, self._form, self.kind)
+
+    @property
+    def _form(self) -> str:
+        return 'called' if self.is_called else 'bound'
 
     @property
     def compiled(self) -> Any:
@@ -171,8 +181,8 @@ def entry_of(function: Any, kind: Kind) -> KernelEntry:
 
 
 def symbols_of(entries: Mapping[str, KernelEntry]) -> tuple[str, ...] | None:
-    """Return what entries are now, as libraries name them; None: that is not known."""
+    """Return what entries are now, as they are kept; None: that is not known."""
     try:
-        return tuple(entry.symbol for entry in entries.values())
+        return tuple(entry.kept_symbol for entry in entries.values())
     except UnknownValue:
         return None

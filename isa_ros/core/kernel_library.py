@@ -17,7 +17,7 @@ import struct
 from typing import Any, Protocol
 
 from isa_ros.core import kernel_key
-from isa_ros.core.kernel_key import file_digest, source_digest
+from isa_ros.core.kernel_key import file_digest, kernel_digest, source_digest
 from isa_ros.core.kinds import (
     Kind, kind_of_form, kind_text, RESULT_WORDS, value_of, words_of)
 from isa_ros.core.value_text import UnknownValue
@@ -27,8 +27,9 @@ SHIPPED = Path(__file__).parents[1] / 'kernels'
 SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
             'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
 """Of numba, that change machine code: with one in the environment all kernels are compiled."""
+MAKERS = 'compiler', 'kinds', 'lowering', 'object_runtime', 'objects', 'shortcuts', 'words'
+"""Modules of this room that make machine code of entries: with another source all is made anew."""
 _RESULT = '_result'     # behind a symbol, of the form of what the kernel returns
-_MAKERS = ('compiler', 'kinds', 'lowering', 'object_runtime', 'objects', 'shortcuts', 'words')
 _RESULT_BYTES = RESULT_WORDS * ctypes.sizeof(ctypes.c_int64)
 _CALLED = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p)
 _V3 = frozenset(('abm', 'avx2', 'bmi1', 'bmi2', 'f16c', 'fma', 'movbe'))
@@ -71,7 +72,7 @@ class Call:
 def _makers() -> str:
     """Return the digest of the sources that make entries of kernels."""
     own = Path(kernel_key.__file__)
-    return ' '.join(file_digest(str(own.with_name(f'{name}.py'))) for name in _MAKERS)
+    return ' '.join(file_digest(str(own.with_name(f'{name}.py'))) for name in MAKERS)
 
 
 def symbol_of(kernel: Any, form: str, kind: Kind) -> str:
@@ -84,8 +85,26 @@ def symbol_of(kernel: Any, form: str, kind: Kind) -> str:
         The kernel names a value that is not known, or a source is missing.
 
     """
-    text = f'{_makers()} {form} {source_digest(kernel).hex()} {kind_text(kind)}'
-    return f'{kernel.__name__}_{hashlib.sha256(text.encode()).hexdigest()[:32]}'
+    return f'{kernel.__name__}_{_digest_text(source_digest(kernel), form, kind)}'
+
+
+def kept_symbol_of(kernel: Any, form: str, kind: Kind) -> str:
+    """
+    Return the name by which it is kept: other words around the same code leave it as it is.
+
+    Raises
+    ------
+    UnknownValue
+        The kernel names a value that is not known.
+
+    """
+    return f'{kernel.__name__}_{_digest_text(kernel_digest(kernel), form, kind)}'
+
+
+def _digest_text(digest: bytes, form: str, kind: Kind) -> str:
+    """Return the digest of a kernel, of what makes an entry of it, and of the entry's kind."""
+    text = f'{_makers()} {form} {digest.hex()} {kind_text(kind)}'
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
 def result_symbol(symbol: str) -> str:

@@ -27,7 +27,7 @@ class LargeKernel:
 
     def __init__(self, entry: KernelEntry, code: bytes) -> None:
         from isa_ros.core.object_code import ObjectCode
-        self._symbol, self._code = entry.symbol, ObjectCode(code)
+        self._symbol, self._code = entry.kept_symbol, ObjectCode(code)
 
     @property
     def address(self) -> int:
@@ -57,7 +57,7 @@ def is_made(entry: KernelEntry) -> bool:
         return False
     from isa_ros.core.kept_objects import kept, kept_name
     from isa_ros.core.objects import own_target
-    return kept(kept_name({entry.symbol: entry}, own_target())) is not None
+    return kept(kept_name({entry.kept_symbol: entry}, own_target())) is not None
 
 
 @cache
@@ -69,7 +69,7 @@ def made(entry: KernelEntry) -> LargeKernel | None:
     from isa_ros.core.objects import own_target
     try:
         with _Told(entry.kernel) as told:
-            code, = objects_of_entries([{entry.symbol: entry}], own_target(), told)
+            code, = objects_of_entries([{entry.kept_symbol: entry}], own_target(), told)
     except (ConfigError, RunError):
         return None     # it allocates, or the process was ended
     return LargeKernel(entry, code)
