@@ -115,6 +115,15 @@ def browser(window: Any) -> Iterator[Any]:
     window.log()
 
 
+@pytest.fixture(scope='session', autouse=True)
+def large_kernels_of_tests() -> Iterator[None]:
+    """Have large kernels of tests lowered as those of the package are: none raises an error."""
+    from isa_ros.core.large_kernels import PACKAGES
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr('isa_ros.core.large_kernels.PACKAGES', [*PACKAGES, 'tests'])
+        yield
+
+
 @pytest.fixture(scope='session')
 def compiled_kernels() -> None:
     """Wait until the kernels are compiled."""

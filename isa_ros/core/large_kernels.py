@@ -18,8 +18,8 @@ from isa_ros.errors import ConfigError, RunError
 
 MANY = 40
 """Kernels in one: fewer are compiled in this process before another one has begun."""
-_PACKAGE = __name__.partition('.')[0]
-"""None of its kernels raises an error of Python, which would end the process."""
+PACKAGES = [__name__.partition('.')[0]]
+"""Of whose kernels none raises an error of Python, at which an object ends the process."""
 
 
 class LargeKernel:
@@ -43,7 +43,7 @@ class LargeKernel:
 def is_large(entry: KernelEntry) -> bool:
     """Return whether an entry has so many kernels of this package that a process is worth it."""
     function = entry.kernel.py_func
-    if function.__module__.partition('.')[0] != _PACKAGE or is_set_for_numba():
+    if function.__module__.partition('.')[0] not in PACKAGES or is_set_for_numba():
         return False
     try:
         return len(kernels_of(entry.kernel)) >= MANY

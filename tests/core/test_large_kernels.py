@@ -69,7 +69,7 @@ def directory(tmp_path, monkeypatch):
     monkeypatch.setattr(kept_objects, 'CACHE', own)
     monkeypatch.setattr(kept_objects, 'READ', (own,))
     monkeypatch.setattr(large_kernels, 'MANY', 2)
-    monkeypatch.setattr(large_kernels, '_PACKAGE', 'tests')
+    assert 'tests' in large_kernels.PACKAGES     # by tests/conftest.py
     made.cache_clear()
     return own
 
@@ -172,11 +172,14 @@ def test_what_is_large(monkeypatch):
     """Kernels of this package, unless a setting or a value without a text is numba's."""
     from isa_ros.actuator.integration import rk4_steps
     step = KernelEntry(rk4_steps, TupleKind(tuple, ()), True)
-    assert not is_large(step) and is_large(entry())
+    assert is_large(step) and is_large(entry())
     with monkeypatch.context() as patch:
-        patch.setattr(large_kernels, '_PACKAGE', 'isa_ros')
+        patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])
         patch.setattr(large_kernels, 'MANY', 40)
         assert is_large(step) and not is_large(entry())
+        patch.setattr(large_kernels, 'PACKAGES', ['tests'])
+        assert not is_large(step) and not is_large(entry())
+        patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])
         patch.setenv('NUMBA_OPT', '3')
         assert not is_large(step) and not is_made(step) and made(step) is None
 
