@@ -35,7 +35,7 @@ class BitcodeOrder(NamedTuple):
     """File descriptor for the name of each kernel as it begins, and an empty line as it ends."""
 
 
-class Lowering:
+class BitcodeProcess:
     """A process that makes bitcode."""
 
     def __init__(self, process: 'subprocess.Popen[bytes]', told: TextIO, code: BinaryIO,
@@ -72,7 +72,7 @@ def _read(file: BinaryIO) -> bytes:
 
 
 @contextmanager
-def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[Lowering]:
+def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[BitcodeProcess]:
     """
     Start a process that lowers entries by exported names; it does not outlive the context.
 
@@ -96,7 +96,7 @@ def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[Lowering]:
             os.close(tells)
         with process:
             try:
-                yield Lowering(process, lines, code, errors)
+                yield BitcodeProcess(process, lines, code, errors)
             finally:
                 process.kill()
 

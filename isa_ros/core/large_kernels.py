@@ -26,8 +26,8 @@ class LargeKernel:
     """The machine code of an entry."""
 
     def __init__(self, entry: KernelEntry, code: bytes) -> None:
-        from isa_ros.core.object_code import ObjectCode
-        self._symbol, self._code = entry.kept_symbol, ObjectCode(code)
+        from isa_ros.core.loaded_object import LoadedObject
+        self._symbol, self._code = entry.kept_symbol, LoadedObject(code)
 
     @property
     def address(self) -> int:

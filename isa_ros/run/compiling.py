@@ -124,11 +124,11 @@ def _reported_to(report: CompilationReport) -> AbstractContextManager[object]:
     """Return a context in which the compiler tells a report what it does."""
     from numba.core.event import Event, install_listener, Listener
 
-    class Compilations(Listener):
+    class Reported(Listener):
         def on_start(self, event: Event) -> None:
             report.start(event.data['dispatcher'])
 
         def on_end(self, event: Event) -> None:
             report.end()
-    context: AbstractContextManager[object] = install_listener('numba:compile', Compilations())
+    context: AbstractContextManager[object] = install_listener('numba:compile', Reported())
     return context

@@ -1,6 +1,6 @@
 """What waits for the first compilation is called once, and only while it waits."""
 
-from isa_ros.core.compilations import compilations, Compilations
+from isa_ros.core.compilations import Compilations, compilations
 
 
 def test_what_waits_is_called_once_the_last_first() -> None:

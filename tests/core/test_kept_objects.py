@@ -75,7 +75,7 @@ def test_what_has_no_name_is_not_kept(directory, monkeypatch, capsys):
     def refuse(*given):
         raise UnknownValue('source a.py')
     from isa_ros.core import kernel as kernels
-    monkeypatch.setattr(kernels, 'symbol_of', refuse)
+    monkeypatch.setattr(kernels, 'kept_symbol_of', refuse)
     assert symbols_of(entries()) is None and kept_name(entries(), V3) is None
     keep(None, b'code')
     assert kept(None) is None and not directory.exists()

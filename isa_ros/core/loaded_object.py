@@ -8,7 +8,7 @@ from isa_ros.core.kinds import kind_of_form
 import llvmlite.binding as llvm
 
 
-class ObjectCode:
+class LoadedObject:
     """An object of `isa_ros.core.objects`; it stays in memory as long as this does."""
 
     def __init__(self, code: bytes) -> None:
