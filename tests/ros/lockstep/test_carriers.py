@@ -15,6 +15,12 @@ from tests.ros.lockstep.participants import (
 pytestmark = pytest.mark.ros
 
 
+@pytest.fixture(autouse=True)
+def repeated_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the coordinator repeat what is lost after a fifth of a second, not of 1 s."""
+    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.2)
+
+
 def dropping(send: Callable[[bytes], object]) -> Callable[[bytes], bool]:
     """Lose the first message, as if the middleware had dropped the participant for a while."""
     messages: list[bytes] = []
@@ -65,7 +71,6 @@ def test_a_step_that_a_round_loses_is_asked_for_again(observer, monkeypatch, car
         self._own.sockets[:] = sockets
         return is_sent
     monkeypatch.setattr(TickRound, 'send', send_but_the_third)
-    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.2)
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer)
@@ -123,14 +128,14 @@ def test_a_lost_state_is_given_again(observer, ends, carrier):
 
 def test_a_repeat_that_newer_steps_have_overtaken_is_past(observer, monkeypatch):
     """During a long step of one participant its steps are repeated to all over the topics."""
-    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.05)
+    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.02)
     slow = Scripted()
     steppers = {'haa': Scripted(), 'kfe': slow}
     with spinning(observer.context, steppers):
         transport = make_transport(observer)
         begin(transport)
         tick(transport, 0)
-        slow.pause_s = 0.06
+        slow.pause_s = 0.03
         for number in range(1, 20):
             assert tick(transport, number) == [1.0 + number, 2.0 + number]
             assert transport.snapshots() == [b'after %d' % (number + 1)] * 2
