@@ -1,6 +1,7 @@
 """`isa echo`, `isa set` and `isa command`, with an actuator alone in another process."""
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 import re
 
@@ -17,7 +18,7 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tests.ros.domains import held_domain
-from tests.ros.started import started, wait_for
+from tests.ros.started import Started, started, wait_for
 import yaml
 
 pytestmark = pytest.mark.ros
@@ -98,20 +99,32 @@ def test_a_parameter_that_cannot_be_set_is_2(
     assert expected in text and text.count('\n') == 1
 
 
-@pytest.mark.parametrize('arguments, expected', [
-    (['echo', 'lab/ram/joint_state'],
-     'topic /lab/ram/joint_state not found within 3 s; did you mean /lab/ram/joint_states'),
-    (['command', 'lab/rum', '0.02'],
-     'actuator /lab/rum not found within 3 s; did you mean /lab/ram?'),
-    (['command', 'lab/rum', '--enable'], 'actuator /lab/rum not found within 3 s; did you mean'),
-    (['set', 'lab/rum', 'reu.force.kp'],
-     'node /lab/rum not found within 3 s; did you mean /lab/ram?'),
-])
-def test_what_is_not_there_is_3_with_what_is(
-        ram: str, arguments: list[str], expected: str,
-        capsys: pytest.CaptureFixture[str]) -> None:
-    text = printed(capsys, *arguments, '--timeout', '3', code=3)
-    assert expected in text and text.count('\n') == 1
+NOT_THERE = {
+    'topic': (['echo', 'lab/ram/joint_state'],
+              'topic /lab/ram/joint_state not found within 3 s; did you mean /lab/ram/joint_states'),
+    'actuator': (['command', 'lab/rum', '0.02'],
+                 'actuator /lab/rum not found within 3 s; did you mean /lab/ram?'),
+    'device': (['command', 'lab/rum', '--enable'],
+               'actuator /lab/rum not found within 3 s; did you mean'),
+    'node': (['set', 'lab/rum', 'reu.force.kp'],
+             'node /lab/rum not found within 3 s; did you mean /lab/ram?')}
+
+
+@pytest.fixture(scope='module')
+def searching(ram: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Started]]:
+    """Return the commands about what is not there, which wait at the same time."""
+    folder = tmp_path_factory.mktemp('searching')
+    with ExitStack() as stack:
+        yield {name: stack.enter_context(
+            started(folder / name, 'isa_ros', *arguments, '--timeout', '3'))
+            for name, (arguments, _) in NOT_THERE.items()}
+
+
+@pytest.mark.parametrize('name', NOT_THERE)
+def test_what_is_not_there_is_3_with_what_is(searching: dict[str, Started], name: str) -> None:
+    assert searching[name].exit_code() == 3
+    text = searching[name].errors
+    assert NOT_THERE[name][1] in text and text.count('\n') == 1
 
 
 def test_without_a_topic_all_are_listed(ram: str, capsys: pytest.CaptureFixture[str]) -> None:
