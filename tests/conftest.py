@@ -1,6 +1,7 @@
 """Settings of all tests, which of them run, and checks of what each leaves unchanged."""
 
 from collections.abc import Generator, Iterator
+import gc
 import os
 import signal
 from typing import Any
@@ -41,13 +42,19 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
-    """Collect 12,000 tests in two thirds of the time; of all, workers rewrite each file once."""
+    """
+    Collect 12,000 tests in two thirds of the time; of all, workers rewrite each file once.
+
+    Tests and modules stay: the collections of garbage that follow leave them out.
+    """
     with uncollected():
         config = session.config
         if _is_worker(config) and config.args == config.getini('testpaths'):
             from tests.scheduling import import_share
             import_share(config)
-        return (yield)
+        found = yield
+        gc.freeze()
+        return found
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -6,6 +6,7 @@ import re
 
 import pytest
 from scripts import build_docs
+from tests.garbage import uncollected
 
 DOCS = build_docs.SOURCE
 _TREE = re.compile(r'^```\{toctree\}\n(.*?)^```$', re.MULTILINE | re.DOTALL)
@@ -41,7 +42,8 @@ def test_a_page_of_the_tree_says_what_is_below_it(page: str) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(bool(build_docs.missing()), reason=build_docs.missing())
 def test_the_book_is_made_without_a_warning_and_loads_nothing(tmp_path: Path) -> None:
-    assert build_docs.main([str(tmp_path)]) == 0
+    with uncollected():     # a fifth faster
+        assert build_docs.main([str(tmp_path)]) == 0
     for page in DOCS.rglob('*.md'):
         made = tmp_path / page.relative_to(DOCS).with_suffix('.html')
         assert '<h1>' in made.read_text(encoding='utf-8'), made
