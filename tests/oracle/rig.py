@@ -86,13 +86,12 @@ class Rig:
             trace[name] = np.nan
         ports, replies = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_REPLY)
         ports['supply_pressure'] = self.supply_pressure
-        work = np.zeros(3)
+        work, x = np.zeros(3), np.array(leg.actuator_positions)
         for k in range(n):
             t_ns = k * step_ns
             if leg.is_held and t_ns >= release_ns:
                 leg.release()
             leg.ports(ports)
-            x = np.array(leg.actuator_positions)
             for j, actuator in enumerate(actuators):
                 if t_ns % self.command_ns == 0:
                     position, velocity, effort, stiffness, damping = commands[
@@ -105,7 +104,8 @@ class Rig:
             leg.advance(replies)
             rows = trace[k * WINDOWS:(k + 1) * WINDOWS]
             rows['mean'] = replies['mean_forces'].T
-            work += replies['mean_forces'].mean(axis=1) * (np.array(leg.actuator_positions) - x)
+            before, x = x, np.array(leg.actuator_positions)
+            work += replies['mean_forces'].mean(axis=1) * (x - before)
             last = rows[-1:]
             last['force'] = replies['force']
             last['angle'] = leg.sample[0]['position']
