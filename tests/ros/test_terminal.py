@@ -101,7 +101,8 @@ def test_a_parameter_that_cannot_be_set_is_2(
 
 NOT_THERE = {
     'topic': (['echo', 'lab/ram/joint_state'],
-              'topic /lab/ram/joint_state not found within 3 s; did you mean /lab/ram/joint_states'),
+              'topic /lab/ram/joint_state not found within 3 s; '
+              'did you mean /lab/ram/joint_states'),
     'actuator': (['command', 'lab/rum', '0.02'],
                  'actuator /lab/rum not found within 3 s; did you mean /lab/ram?'),
     'device': (['command', 'lab/rum', '--enable'],
