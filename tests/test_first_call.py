@@ -12,6 +12,7 @@ import subprocess
 import time
 
 import pytest
+from tests.ros.started import wait_for
 
 ROOT = Path(__file__).parents[1]
 PINS = '# what is needed\none==1.0\ntwo==2.0\nthree==3.0; python_version < "3"\n\nfour==4.0\n'
@@ -44,6 +45,9 @@ case "$*" in
 esac
 """
 
+SLEEP = f'#!/bin/sh\nexec {shutil.which("sleep")} 0.05\n'
+"""A pause between two looks at the progress, a tenth of that of `isa`."""
+
 
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:
@@ -55,6 +59,15 @@ def clone(tmp_path: Path) -> Path:
     python.write_text(PYTHON)
     python.chmod(0o755)
     return tmp_path
+
+
+@pytest.fixture
+def hurried(clone: Path) -> Path:
+    """Return a clone that looks at the progress more often."""
+    sleep = clone / 'bin' / 'sleep'
+    sleep.write_text(SLEEP)
+    sleep.chmod(0o755)
+    return clone
 
 
 class Call:
@@ -94,23 +107,24 @@ def called(clone: Path, on_terminal: bool) -> Iterator[Call]:
 
 
 @pytest.mark.parametrize('on_terminal', [True, False])
-def test_pip_is_shown_with_its_phases_and_totals(clone: Path, on_terminal: bool) -> None:
+def test_pip_is_shown_with_its_phases_and_totals(hurried: Path, on_terminal: bool) -> None:
     """What a marker excludes is not among the total; the second call is silent."""
-    with called(clone, on_terminal) as call:
+    with called(hurried, on_terminal) as call:
         title = 'installing requirements.txt, once: '
         call.wait_for(f'{title}collecting {"1 of 3 packages" if on_terminal else ""}')
-        (clone / 'a').touch()
+        (hurried / 'a').touch()
         # A pipe has a line for each phase, with the numbers that it began with.
         call.wait_for('downloading 2 of 3 packages' if on_terminal else 'downloading ')
-        (clone / 'b').touch()
+        (hurried / 'b').touch()
         call.wait_for('installing 1 of 3 packages' if on_terminal else f'{title}installing ')
-        (clone / 'c').touch()
+        (hurried / 'c').touch()
         call.wait_for(f'{title}done in ')
         call.wait_for('installing isa_ros: done in ')
         assert call.process.wait(60) == 0
         assert call.process.stdout is not None
         assert call.process.stdout.read() == 'ran -m isa_ros words\n'
-    again = subprocess.run([clone / 'isa', 'words'], capture_output=True, text=True, check=True)
+    again = subprocess.run(
+        [hurried / 'isa', 'words'], capture_output=True, text=True, check=True)
     assert not again.stderr
 
 
@@ -121,19 +135,19 @@ def test_on_a_terminal_nothing_is_silent_for_two_seconds(clone: Path) -> None:
         call.wait_for('collecting 1 of 3 packages, 2 s')
 
 
-def test_a_pip_that_fails_is_3_with_the_end_of_its_log(clone: Path) -> None:
+def test_a_pip_that_fails_is_3_with_the_end_of_its_log(hurried: Path) -> None:
     for name in ('a', 'b', 'c', 'fails'):
-        (clone / name).touch()
-    with called(clone, on_terminal=False) as call:
+        (hurried / name).touch()
+    with called(hurried, on_terminal=False) as call:
         call.wait_for('ERROR: no space')
-        call.wait_for(f'cannot install requirements.txt: the log is {clone}/.venv/pip.log')
+        call.wait_for(f'cannot install requirements.txt: the log is {hurried}/.venv/pip.log')
         assert call.process.wait(60) == 3
-    assert not (clone / '.venv' / 'requirements.txt').exists()
+    assert not (hurried / '.venv' / 'requirements.txt').exists()
 
 
-def test_an_interrupt_ends_pip_too(clone: Path) -> None:
+def test_an_interrupt_ends_pip_too(hurried: Path) -> None:
     """What runs in the background of a script would ignore it."""
-    with called(clone, on_terminal=True) as call:
+    with called(hurried, on_terminal=True) as call:
         call.wait_for('collecting 1 of 3 packages')
         pip = subprocess.run(
             ['pgrep', '-P', str(call.process.pid), '-f', 'pip install'], check=True,
@@ -141,9 +155,7 @@ def test_an_interrupt_ends_pip_too(clone: Path) -> None:
         call.process.send_signal(signal.SIGINT)
         call.wait_for('isa: interrupted')
         assert call.process.wait(60) == 130
-        deadline = time.monotonic() + 60.0
-        while any(Path(f'/proc/{own}').exists() for own in pip):
-            assert time.monotonic() < deadline
+        wait_for(lambda: not any(Path(f'/proc/{own}').exists() for own in pip), 'the end of pip')
 
 
 MADE = 'ran -m scripts.make_kernels\n'
