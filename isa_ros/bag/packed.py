@@ -62,8 +62,10 @@ class Packed(Sequence[tuple[int, bytes]]):
             self.block[start:start + self.layout.sizes[place]])
 
     def __iter__(self) -> Iterator[tuple[int, bytes]]:
-        for k in range(len(self)):
-            yield self[k]
+        data, own = self.block.tobytes(), self.layout
+        for topic, start, size in zip(
+                own.topics.tolist(), own.starts.tolist(), own.sizes.tolist()):
+            yield topic, data[start:start + size]
 
     def selected(self, places: Sequence[int], topics: Sequence[int]) -> 'Packed':
         """Return the messages at some positions, with other topic indices."""

@@ -34,8 +34,9 @@ class Digests:
 
     def write_tick(self, t_ns: int, sequence: int, messages: list[tuple[int, bytes]]) -> None:
         """Take the messages of one instant: (topic index, CDR bytes)."""
+        instant, hashes = _INSTANT.pack(t_ns, sequence), self._hashes
         for k, data in messages:
-            self._hashes[k].update(_INSTANT.pack(t_ns, sequence) + data)
+            hashes[k].update(instant + data)
 
     def by_topic(self) -> dict[str, str]:
         """Return the digests so far, those of topics without a message among them."""
