@@ -12,6 +12,7 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import FORCE, IMPEDANCE
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.nodes.coordinator.joint_commands import JointCommands
+from isa_ros.nodes.middleware import throttled
 from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.tick.exchange import Rows
@@ -49,10 +50,11 @@ class Run:
 
 @pytest.fixture
 def commanded(observer, monkeypatch):
-    """Return a run, the warnings about it, and what hands a message over."""
+    """Return a run, all warnings about it, and what hands a message over."""
     commands, run, lines = JointCommands(
         observer, RUN, Acceptance(observer, ACCEPT_ALL)), Run(), []
     commands.bind(run)
+    monkeypatch.setattr(throttled, 'WARNING_PERIOD_S', 0.0)
     monkeypatch.setattr(observer.get_logger(), 'warning', lambda line, **_: lines.append(line))
     return run, lines, lambda message: commands._on_message(message, RUN.leg)
 

@@ -2,7 +2,7 @@
 
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
-from isa_ros.nodes.middleware import servers
+from isa_ros.nodes.middleware import servers, throttled
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
@@ -86,6 +86,7 @@ def test_a_setpoint_that_is_none_is_discarded(observer, knee):
 def test_a_setpoint_of_many_names_is_one_short_line(knee, monkeypatch):
     """100,000 names were a line of a megabyte."""
     lines = []
+    monkeypatch.setattr(throttled, 'WARNING_PERIOD_S', 0.0)
     monkeypatch.setattr(
         type(knee.get_logger()), 'warning', lambda self, text, **_: lines.append(text))
     names = [f'stranger\x1b[2J{k}' for k in range(100_000)]

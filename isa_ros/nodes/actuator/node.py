@@ -15,11 +15,12 @@ from isa_ros.core.signals import COMMAND
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
-from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
+from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import KEPT, SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
+from isa_ros.nodes.middleware.throttled import ThrottledWarnings
 from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
@@ -80,6 +81,7 @@ class ActuatorNode(Node):
             self, self.actuator, changing(config.sheet, config.load), self._parameter_overrides)
         self._acceptance = Acceptance(self, accept)
         self._acceptance.guard_parameters()
+        self._rejected, self._limited = (ThrottledWarnings(self.get_logger()) for _ in range(2))
         memory, plant = self.actuator.memory, config.sheet.plant
         heats_up, has_cushion = is_heated(plant), is_cushioned(plant)
         self._published_ns = 0
@@ -205,12 +207,10 @@ class ActuatorNode(Node):
             command = msg_to_command(message, self.setup.config.name)
             limited = self.actuator.admit(command)
         except SetpointError as error:
-            self.get_logger().warning(
-                f'setpoint rejected: {one_line(str(error))}',
-                throttle_duration_sec=WARNING_PERIOD_S)
+            self._rejected(f'setpoint rejected: {one_line(str(error))}')
             return
         if limited:
-            self.get_logger().warning(limited, throttle_duration_sec=WARNING_PERIOD_S)
+            self._limited(limited)
 
     def _on_enable(
             self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

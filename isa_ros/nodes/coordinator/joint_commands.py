@@ -8,8 +8,9 @@ from isa_ros.config.runs.body_config import BodyConfig, JOINT_COMMAND
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
 from isa_ros.errors import one_line, SetpointError
-from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
+from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.qos import SETPOINT
+from isa_ros.nodes.middleware.throttled import ThrottledWarnings
 from isa_ros.run.coordinator import Coordinator
 from isa_ros.surroundings.joint_space import to_actuator
 from isa_ros.tick.exchange import Rows
@@ -32,7 +33,7 @@ class JointCommands:
 
     def __init__(self, node: Node, run: RunConfig, acceptance: Acceptance) -> None:
         self._acceptance = acceptance
-        self._log = node.get_logger()
+        self._warn = ThrottledWarnings(node.get_logger())
         self._run = run
         self._ranges = [SetpointRange(own.name, own.sheet, own.beyond_range)
                         for own in run.actuators]
@@ -69,9 +70,6 @@ class JointCommands:
             if row in self._commanded or not rows.requests['kinds'][row]:
                 self._commanded.add(row)
                 rows.requests[row] = command
-
-    def _warn(self, line: str) -> None:
-        self._log.warning(line, throttle_duration_sec=WARNING_PERIOD_S)
 
     def commands(
             self, message: JointState, body: BodyConfig, rows: Rows

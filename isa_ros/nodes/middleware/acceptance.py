@@ -4,12 +4,12 @@ from collections.abc import Collection, Sequence
 
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.throttled import ThrottledWarnings
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 ACCEPT = 'accept'
-WARNING_PERIOD_S = 1.0
 
 
 class Acceptance:
@@ -20,7 +20,7 @@ class Acceptance:
     """
 
     def __init__(self, node: Node, accept: str) -> None:
-        self._node = node
+        self._node, self._warn = node, ThrottledWarnings(node.get_logger())
         self.is_open = accept == ACCEPT_ALL
         self.reason = f'the run has {ACCEPT}: {accept}'
         node.declare_parameter(ACCEPT, accept, ParameterDescriptor(
@@ -31,8 +31,7 @@ class Acceptance:
     def takes_setpoint(self) -> bool:
         """Return whether a setpoint of a topic is taken; log one that is not, once a second."""
         if not self.is_open:
-            self._node.get_logger().warning(
-                f'setpoint rejected: {self.reason}', throttle_duration_sec=WARNING_PERIOD_S)
+            self._warn(f'setpoint rejected: {self.reason}')
         return self.is_open
 
     def refuse_closed(self) -> None:
