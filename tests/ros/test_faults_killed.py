@@ -1,16 +1,42 @@
 """Any process of a run is killed: it is reported at once, and the bag can be used."""
 
+from collections.abc import Iterator
 import os
+from pathlib import Path
 import signal
+from typing import NamedTuple
 
 import pytest
 from tests.ros.bags import mcap_file
+from tests.ros.domains import held_domain
 from tests.ros.faults import (
     assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S,
     wait_for_chunk)
-from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, wait_for
+from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, Started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+
+class Abandoned(NamedTuple):
+    """An actuator whose coordinator was killed, the bag of their run, and their domain."""
+
+    rotor: Started
+    bag: Path
+    domain: int
+
+
+@pytest.fixture(scope='module', autouse=True)
+def abandoned(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Abandoned]:
+    """Kill the coordinator of an actuator, which waits for it during the other tests."""
+    folder = tmp_path_factory.mktemp('abandoned')
+    bag = folder / 'bag'
+    with pytest.MonkeyPatch.context() as patch, held_domain(patch) as domain, actuator(
+            folder / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
+        with coordinator(folder / 'first.log', config_file=RIG, out=bag) as first:
+            wait_for_chunk(bag, first)
+            first.signal(signal.SIGKILL)
+            assert first.exit_code() == -signal.SIGKILL
+        yield Abandoned(rotor, bag, domain)
 
 
 @pytest.mark.parametrize('name', ['haa', 'kfe'])
@@ -47,19 +73,15 @@ def test_killed_run_loses_its_last_second_at_most(domain, tmp_path, observer, op
     assert_replays(bag, is_whole=False)
 
 
-def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path):
+def test_actuators_of_a_killed_coordinator_serve_the_next(abandoned, tmp_path, monkeypatch):
     """Actuators started by hand wait; the first bag is complete up to its last chunk."""
-    bag, next_bag = tmp_path / 'bag', tmp_path / 'next'
-    with actuator(tmp_path / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
-        with coordinator(tmp_path / 'first.log', config_file=RIG, out=bag) as first:
-            wait_for_chunk(bag, first)
-            first.signal(signal.SIGKILL)
-            assert first.exit_code() == -signal.SIGKILL
-        wait_for(lambda: 'coordinator has ended or sent nothing' in rotor.errors, 'the warning')
-        with coordinator(tmp_path / 'second.log', config_file=RIG, out=next_bag,
-                         duration=0.05) as second:
-            assert second.exit_code() == 0, second.errors
-        assert rotor.is_running()
+    (rotor, bag, domain), next_bag = abandoned, tmp_path / 'next'
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+    wait_for(lambda: 'coordinator has ended or sent nothing' in rotor.errors, 'the warning')
+    with coordinator(tmp_path / 'second.log', config_file=RIG, out=next_bag,
+                     duration=0.05) as second:
+        assert second.exit_code() == 0, second.errors
+    assert rotor.is_running()
     assert_replays(bag, is_whole=False)
     assert assert_replays(next_bag) == 50
     assert mcap_file(next_bag).stat().st_size < mcap_file(bag).stat().st_size
