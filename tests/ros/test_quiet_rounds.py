@@ -22,6 +22,7 @@ from isa_ros.tick.source import ScheduledSource
 from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 import pytest
+from tests.ros.domains import held_domain, observing
 from tests.ros.driven import driven, Robot
 from tests.ros.lockstep.participants import NAMES
 from tests.ros.started import DEADLINE_S
@@ -65,8 +66,7 @@ def bag_of(directory: Path, observer, pattern: tuple[int, ...],
     return [(own.topic, own.sequence, own.t_ns, own.data) for own in Bag(directory).messages()]
 
 
-@pytest.fixture
-def places(monkeypatch) -> list[int]:
+def noted(patch: pytest.MonkeyPatch) -> list[int]:
     """Return where each call of quiet ticks has ended, among the parts of its actuators."""
     found: list[int] = []
     end = RoundEnds.end_quiet
@@ -74,22 +74,30 @@ def places(monkeypatch) -> list[int]:
     def note(self, tick, n_ticks, place):
         found.append(place)
         return end(self, tick, n_ticks, place)
-    monkeypatch.setattr(RoundEnds, 'end_quiet', note)
+    patch.setattr(RoundEnds, 'end_quiet', note)
     return found
 
 
 @pytest.fixture
-def expected(tmp_path, observer, monkeypatch) -> list[tuple[object, ...]]:
-    """Return the messages of single ticks."""
-    with monkeypatch.context() as patch:
+def places(monkeypatch) -> list[int]:
+    """Return what is `noted` of a test."""
+    return noted(monkeypatch)
+
+
+@pytest.fixture(scope='module')
+def expected(tmp_path_factory) -> list[tuple[object, ...]]:
+    """Return the messages of single ticks, none of which is quiet."""
+    with pytest.MonkeyPatch.context() as patch, held_domain(patch), observing(patch) as observer:
         patch.setattr(TickLoop, 'advance_quietly', lambda loop, until: None)
-        return bag_of(tmp_path / 'single', observer, (1,))
+        places = noted(patch)
+        found = bag_of(tmp_path_factory.mktemp('single') / 'bag', observer, (1,))
+    assert not places and len(found) > 12 * N_TICKS
+    return found
 
 
 def test_a_bag_has_the_same_bytes_however_many_ticks_are_in_a_call(
         tmp_path, observer, places, expected):
     """Commands, devices that change, and chunks; most ticks are quiet."""
-    assert not places and len(expected) > 12 * N_TICKS
     for pattern in (1,), (3,), (20,), (100,), (10**6,):
         assert bag_of(tmp_path / str(pattern[0]), observer, pattern) == expected
     assert len(places) > 5 and min(places) < 0
