@@ -62,10 +62,10 @@ class Packed(Sequence[tuple[int, bytes]]):
             self.block[start:start + self.layout.sizes[place]])
 
     def __iter__(self) -> Iterator[tuple[int, bytes]]:
-        data, own = self.block.tobytes(), self.layout
+        data, own = self.block.data, self.layout
         for topic, start, size in zip(
                 own.topics.tolist(), own.starts.tolist(), own.sizes.tolist()):
-            yield topic, data[start:start + size]
+            yield topic, bytes(data[start:start + size])
 
     def selected(self, places: Sequence[int], topics: Sequence[int]) -> 'Packed':
         """Return the messages at some positions, with other topic indices."""
