@@ -128,7 +128,8 @@ def test_a_lost_state_is_given_again(observer, ends, carrier):
 
 def test_a_repeat_that_newer_steps_have_overtaken_is_past(observer, monkeypatch):
     """During a long step of one participant its steps are repeated to all over the topics."""
-    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.02)
+    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.01)
+    monkeypatch.setattr(lockstep, 'SLICE_S', 0.01)  # or no repeat is due within the pause
     slow = Scripted()
     steppers = {'haa': Scripted(), 'kfe': slow}
     with spinning(observer.context, steppers):
