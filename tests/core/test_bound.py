@@ -5,7 +5,7 @@ import sys
 from typing import NamedTuple
 from weakref import ref
 
-from isa_ros.core.bound import arrays_of, Bound, Program, Rebound, table_of
+from isa_ros.core.bound import _with_attributes, arrays_of, Bound, Program, Rebound, table_of
 from isa_ros.core.kernel import kernel
 import numpy as np
 import pytest
@@ -144,6 +144,24 @@ def test_without_the_compiler_it_is_the_same(tmp_path):
             't.test_arrays_may_be_given_at_each_call()\n')
     subprocess.run([sys.executable, '-c', code], check=True, env={
         'NUMBA_DISABLE_JIT': '1', 'PYTHONPATH': ':'.join(sys.path)})
+
+
+def test_rows_of_plain_python_have_attributes():
+    """Also of records in records, and of several in one; they change the memory itself."""
+    inner = np.dtype([('x', 'f8'), ('size', 'i4')], align=True)
+    rows = np.zeros(2, np.dtype([('own', inner), ('several', inner, (3,)), ('n', 'u1')]))
+    seen, numbers = _with_attributes((rows, Rows(np.arange(3))))
+    seen[1].own.x, seen[0].several[2].x, seen[1].n = 2.5, -1.5, 7
+    seen[1].own['size'] += 4
+    assert rows['own'].tolist() == [(0.0, 0), (2.5, 4)]
+    assert rows['several']['x'].tolist() == [[0.0, 0.0, -1.5], [0.0, 0.0, 0.0]]
+    assert rows['n'].tolist() == [0, 7] and seen[1].own.x == 2.5 and seen[1].n == 7
+    assert numbers.numbers.tolist() == [0, 1, 2] and isinstance(numbers, Rows)
+    for missing in (seen[0], seen[0].own):
+        with pytest.raises(AttributeError, match='^y$'):
+            missing.y
+        with pytest.raises(ValueError, match='no field of name y'):
+            missing.y = 1.0
 
 
 def test_a_bound_kernel_is_kept(tmp_path):
