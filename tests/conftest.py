@@ -124,7 +124,7 @@ def browser(window: Any) -> Iterator[Any]:
 
 @pytest.fixture(scope='session', autouse=True)
 def large_kernels_of_tests() -> Iterator[None]:
-    """Have large kernels of tests lowered as those of the package are: none raises an error."""
+    """Have large kernels of tests lowered, as those of the package are."""
     from isa_ros.core.large_kernels import PACKAGES
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr('isa_ros.core.large_kernels.PACKAGES', [*PACKAGES, 'tests'])

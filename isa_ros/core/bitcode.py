@@ -7,6 +7,7 @@ run none.
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, ExitStack
+import json
 import os
 from pathlib import Path
 import pickle
@@ -17,11 +18,14 @@ import tempfile
 from typing import BinaryIO, IO, NamedTuple, TextIO
 
 from isa_ros.core.kernel import KernelEntry, symbols_of
+from isa_ros.core.kernel_cache import environment
 from isa_ros.core.parent import PARENT_VARIABLE
 from isa_ros.errors import RunError
 
 _ROOT = Path(__file__).parents[2]
-_PROGRAM = (sys.executable, '-m', 'isa_ros.core.lowering_process')
+_FIRST = 'import json, sys; sys.path[:] = json.loads(sys.argv[1])\n'
+"""Of the process: it takes modules from where this one does."""
+_PROGRAM = 'from isa_ros.core.lowering_process import main; sys.exit(main())'
 
 
 class BitcodeOrder(NamedTuple):
@@ -31,6 +35,8 @@ class BitcodeOrder(NamedTuple):
     """By exported name."""
     symbols: tuple[str, ...] | None
     """What they were when they were asked for."""
+    environment: str
+    """The versions of the compiler, and its settings."""
     told: int
     """File descriptor for the name of each kernel as it begins, and an empty line as it ends."""
 
@@ -61,7 +67,8 @@ class BitcodeProcess:
             how = (f'was ended by {signal.Signals(-code).name}' if code < 0
                    else f'ended with exit code {code}: {last}')
             raise RunError(f'machine code: its process {self._process.pid} {how}')
-        sys.stderr.write(said)
+        if said and sys.stderr is not None:
+            sys.stderr.write(said)
         return _read(self._code)
 
 
@@ -77,6 +84,7 @@ def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[BitcodeProcess]:
     Start a process that lowers entries by exported names; it does not outlive the context.
 
     Nor does it outlive this process. Modules of the folder in which this one runs are not taken.
+    Ctrl-C is for this process alone.
 
     Raises
     ------
@@ -85,15 +93,20 @@ def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[BitcodeProcess]:
 
     """
     with ExitStack() as stack:
-        asked, code, errors = (
-            stack.enter_context(tempfile.TemporaryFile()) for _ in range(3))
-        told, tells = os.pipe()
-        lines = stack.enter_context(os.fdopen(told))
         try:
-            order = BitcodeOrder(entries, symbols_of(entries), tells)
-            process = _started(order, asked, code, errors)
-        finally:
-            os.close(tells)
+            asked, code, errors = (
+                stack.enter_context(tempfile.TemporaryFile()) for _ in range(3))
+            told, tells = os.pipe()
+            lines = stack.enter_context(os.fdopen(told))
+            try:
+                order = BitcodeOrder(entries, symbols_of(entries), environment(), tells)
+                process = _started(order, asked, code, errors)
+            finally:
+                os.close(tells)
+        except (OSError, pickle.PicklingError, AttributeError, TypeError) as error:
+            # An entry in a function has no name by which it is pickled; a program may be embedded.
+            raise RunError('machine code: no process can be started to make it, '
+                           f'{getattr(error, "strerror", None) or error}') from error
         with process:
             try:
                 yield BitcodeProcess(process, lines, code, errors)
@@ -103,17 +116,13 @@ def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[BitcodeProcess]:
 
 def _started(order: BitcodeOrder, asked: IO[bytes], code: IO[bytes],
              errors: IO[bytes]) -> 'subprocess.Popen[bytes]':
-    """Start the process of an order; raises as `lowering`."""
+    """Start the process of an order."""
     asked.write(pickle.dumps(order))
     asked.seek(0)
-    environment = os.environ | {
-        PARENT_VARIABLE: str(os.getpid()),
-        'PYTHONPATH': os.pathsep.join(
-            [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])}
-    try:
-        return subprocess.Popen(
-            _PROGRAM, env=environment, cwd=_ROOT, stdin=asked, stdout=code, stderr=errors,
-            pass_fds=(order.told,))     # elsewhere are modules of the user
-    except OSError as error:
-        raise RunError('machine code: no process can be started to make it, '
-                       f'{error.strerror or error}') from error
+    places = [place for place in sys.path if place]     # '' is the folder in which it runs
+    if str(_ROOT) not in places:
+        places.insert(0, str(_ROOT))
+    program = (sys.executable, '-I', '-c', _FIRST + _PROGRAM, json.dumps(places))
+    return subprocess.Popen(
+        program, cwd=_ROOT, stdin=asked, stdout=code, stderr=errors, pass_fds=(order.told,),
+        start_new_session=True, env=os.environ | {PARENT_VARIABLE: str(os.getpid())})

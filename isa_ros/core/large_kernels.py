@@ -2,16 +2,20 @@
 Large kernels of this package that no library has, as after an edit: lowered by another process.
 
 numba optimises and emits each kernel for itself, and once more for each that has it inlined. A
-process that runs none does it once (`isa_ros.core.lowering`) and takes a third of the time; the
+process that runs none does it once (`isa_ros.core.lowering`), in two fifths of the time; the
 machine code gives the same bytes, and its object is kept.
 """
 
+from collections.abc import Iterable
+import dis
 from functools import cache, cached_property
+from threading import RLock
 from typing import Any
 
 from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import KernelEntry
-from isa_ros.core.kernel_key import kernels_of
+from isa_ros.core.kernel_directory import is_kept
+from isa_ros.core.kernel_key import is_unchanged, kernels_of
 from isa_ros.core.kernel_library import Call, is_set_for_numba
 from isa_ros.core.value_text import UnknownValue
 from isa_ros.errors import ConfigError, RunError
@@ -19,7 +23,9 @@ from isa_ros.errors import ConfigError, RunError
 MANY = 40
 """Kernels in one: fewer are compiled in this process before another one has begun."""
 PACKAGES = [__name__.partition('.')[0]]
-"""Of whose kernels none raises an error of Python, at which an object ends the process."""
+"""Whose kernels may be lowered."""
+_RAISE = dis.opmap['RAISE_VARARGS']
+_MAKING = RLock()
 
 
 class LargeKernel:
@@ -41,14 +47,24 @@ class LargeKernel:
 
 
 def is_large(entry: KernelEntry) -> bool:
-    """Return whether an entry has so many kernels of this package that a process is worth it."""
+    """
+    Return whether an entry has so many kernels of this package that a process is worth it.
+
+    None that raises an error of Python: an object ends the process there.
+    """
     function = entry.kernel.py_func
     if function.__module__.partition('.')[0] not in PACKAGES or is_set_for_numba():
         return False
     try:
-        return len(kernels_of(entry.kernel)) >= MANY
+        kernels = kernels_of(entry.kernel)
     except UnknownValue:
         return False
+    return len(kernels) >= MANY and not _raises(kernels)
+
+
+def _raises(kernels: Iterable[Any]) -> bool:
+    """Return whether one has a ``raise`` or an ``assert``."""
+    return any(_RAISE in own.py_func.__code__.co_code[::2] for own in kernels)
 
 
 def is_made(entry: KernelEntry) -> bool:
@@ -57,47 +73,70 @@ def is_made(entry: KernelEntry) -> bool:
         return False
     from isa_ros.core.kept_objects import kept, kept_name
     from isa_ros.core.objects import own_target
-    return kept(kept_name({entry.kept_symbol: entry}, own_target())) is not None
+    try:
+        return kept(kept_name({entry.kept_symbol: entry}, own_target())) is not None
+    except ConfigError:
+        return False    # no object can be made for this processor
+
+
+def made(entry: KernelEntry) -> LargeKernel | None:
+    """
+    Return a large entry, made now if it is not kept; None: it is for numba to compile.
+
+    So it is where numba has kept it, where a process is of no use, and where values that its
+    kernels name are no longer those of the sources.
+    """
+    with _MAKING:   # by one thread
+        return _made(entry)
 
 
 @cache
-def made(entry: KernelEntry) -> LargeKernel | None:
-    """Return a large entry, made now if it is not kept; None: it is for numba to compile."""
+def _made(entry: KernelEntry) -> LargeKernel | None:
     if not is_large(entry):
+        return None
+    if not is_made(entry) and (is_kept(entry.compiled) or not is_unchanged(entry.kernel)):
         return None
     from isa_ros.core.object_making import objects_of_entries
     from isa_ros.core.objects import own_target
     try:
-        with _Told(entry.kernel) as told:
+        with Told(entry.kernel) as told:
             code, = objects_of_entries([{entry.kept_symbol: entry}], own_target(), told)
     except (ConfigError, RunError):
         return None     # it allocates, or the process was ended
     return LargeKernel(entry, code)
 
 
-class _Told:
-    """Tells those who watch of the kernels that the process lowers, and of the end of all."""
+class Told:
+    """
+    Tells those who watch of the kernels that the process lowers, each once, and of the end of all.
+
+    What else it lowers, such as the entry itself, is no kernel to them.
+    """
 
     def __init__(self, kernel: Any) -> None:
-        self._kernel, self._n_running = kernel, 0
+        self._kernel = kernel
+        self._running: list[bool] = []
+        """Whether those who watch know of it, the innermost last."""
 
-    def __enter__(self) -> '_Told':
+    def __enter__(self) -> 'Told':
         return self
 
     def __exit__(self, *_: object) -> None:
-        while self._n_running:
+        while self._running:
             self('')
 
     @cached_property
-    def _named(self) -> dict[str, Any]:
+    def _untold(self) -> dict[str, Any]:
+        """Return the kernels of which nothing was told yet, by name."""
         return {own.__name__: own for own in kernels_of(self._kernel)}
 
     def __call__(self, name: str) -> None:
         """Take a line: the name of a kernel that begins; an empty one as it ends."""
         if name:
-            compilations().begin()
-            compilations().start(self._named.get(name, self._kernel))
-            self._n_running += 1
-        else:
+            kernel = self._untold.pop(name, None)
+            self._running.append(kernel is not None)
+            if kernel is not None:
+                compilations().begin()
+                compilations().start(kernel)
+        elif self._running.pop():
             compilations().end()
-            self._n_running -= 1

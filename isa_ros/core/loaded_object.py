@@ -1,21 +1,25 @@
-"""The machine code of an object, run in this process: it takes no linker, and no numba."""
+"""The machine code of an object, run in this process: it takes no linker."""
 
 import ctypes
 import json
+from typing import Any
 
 from isa_ros.core.kernel_library import Call, result_symbol
 from isa_ros.core.kinds import kind_of_form
 import llvmlite.binding as llvm
 
+_ENGINES: list[Any] = []    # with the code to which addresses refer, until the process ends
+
 
 class LoadedObject:
-    """An object of `isa_ros.core.objects`; it stays in memory as long as this does."""
+    """An object of `isa_ros.core.objects`."""
 
     def __init__(self, code: bytes) -> None:
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
         self._engine = llvm.create_mcjit_compiler(
             llvm.parse_assembly(''), llvm.Target.from_default_triple().create_target_machine())
+        _ENGINES.append(self._engine)
         self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()
 

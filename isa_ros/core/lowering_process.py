@@ -5,13 +5,14 @@ import pickle
 import sys
 
 from isa_ros.core.kernel import symbols_of
+from isa_ros.core.kernel_cache import environment
 from isa_ros.core.lowering import lower_long
 from isa_ros.core.objects import bitcode_of
 from isa_ros.core.parent import end_with_parent
 from numba.core.event import Event, install_listener, Listener
 
 
-class Told(Listener):
+class LinesOfKernels(Listener):
     """Writes the name of each kernel as it begins, and an empty line as it ends."""
 
     def __init__(self, file: int) -> None:
@@ -35,11 +36,10 @@ def main() -> int:
         if symbols_of(order.entries) != order.symbols:
             print('a source was edited meanwhile', file=sys.stderr)
             return 1
+        if environment() != order.environment:
+            print('its compiler is another one', file=sys.stderr)
+            return 1
         lower_long()    # and run no kernel from now on
-        with install_listener('numba:compile', Told(order.told)):
+        with install_listener('numba:compile', LinesOfKernels(order.told)):
             out.write(bitcode_of(order.entries))
     return 0
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -53,14 +53,12 @@ class _Object:
     def code(self, tell: Callable[[str], object]) -> bytes:
         """Return it, made now if need be; raises as `objects_of_entries`."""
         if self._code is None:
-            self._code = object_of_bitcode(self._of_bitcode(tell), self._entries, self._target)
+            bitcode = self._bitcode
+            if self._lowering is not None:
+                bitcode = self._lowering.bitcode(tell)
+            assert bitcode is not None
+            self._code = object_of_bitcode(bitcode, self._entries, self._target)
+            if self._lowering is not None:
+                keep(self._bitcode_name, bitcode)
             keep(self._name, self._code)
         return self._code
-
-    def _of_bitcode(self, tell: Callable[[str], object]) -> bytes:
-        """Return its bitcode."""
-        if self._lowering is not None:
-            self._bitcode = self._lowering.bitcode(tell)
-            keep(self._bitcode_name, self._bitcode)
-        assert self._bitcode is not None
-        return self._bitcode

@@ -21,7 +21,7 @@ from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_library import result_symbol
 from isa_ros.core.kinds import result_form
 from isa_ros.core.object_runtime import RUNTIME
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, one_line, RunError
 import llvmlite.binding as llvm
 
 
@@ -86,8 +86,20 @@ def bitcode_of(entries: Mapping[str, KernelEntry]) -> bytes:
 
 
 def object_of_bitcode(bitcode: bytes, names: Iterable[str], target: Target) -> bytes:
-    """Return the object of entries by `bitcode_of` and their names; raises as `object_of`."""
-    return _emitted(llvm.parse_bitcode(bitcode), ', '.join(names), target)
+    """
+    Return the object of entries by `bitcode_of` and their names; raises as `object_of`.
+
+    Raises
+    ------
+    RunError
+        The bitcode is not whole.
+
+    """
+    try:
+        module = llvm.parse_bitcode(bitcode)
+    except RuntimeError as error:
+        raise RunError(f'machine code: {one_line(str(error))}') from error
+    return _emitted(module, ', '.join(names), target)
 
 
 def _linked(entries: Mapping[str, KernelEntry]) -> Any:

@@ -1,10 +1,14 @@
 """Large kernels that no library has are lowered by a process, once, and give the same bytes."""
 
+from concurrent.futures import ThreadPoolExecutor
 import math
+import os
 import sys
+import time
 from typing import NamedTuple
 
 from isa_ros.core import bitcode, kept_objects, kernel as kernels, kernel_key, large_kernels
+from isa_ros.core import object_making
 from isa_ros.core.bound import Bound
 from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import entry_address, kernel, KernelEntry
@@ -57,6 +61,27 @@ def bound_thirds(own):
 
 
 @kernel
+def half(x):
+    return x / 2.0
+
+
+@kernel
+def two_calls(own):
+    """Call two, one of them twice and for two types."""
+    own.numbers[0] = third(own.numbers[0])
+    own.numbers[1] = half(own.numbers[1]) + third(1)
+    return 0
+
+
+@kernel
+def checked(x):
+    """Raise an error."""
+    if x < 0.0:
+        raise ValueError('below zero')
+    return third(x)
+
+
+@kernel
 def sine(x):
     """Call a function that no object has."""
     return math.sin(third(x))
@@ -70,13 +95,14 @@ def directory(tmp_path, monkeypatch):
     monkeypatch.setattr(kept_objects, 'READ', (own,))
     monkeypatch.setattr(large_kernels, 'MANY', 2)
     assert 'tests' in large_kernels.PACKAGES     # by tests/conftest.py
-    made.cache_clear()
+    monkeypatch.setattr(large_kernels, 'is_kept', lambda kernel: False)
+    large_kernels._made.cache_clear()
     return own
 
 
 def no_process(monkeypatch):
     """Let a process that makes bitcode fail."""
-    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', 'raise SystemExit(9)'))
+    monkeypatch.setattr(bitcode, '_PROGRAM', 'raise SystemExit(9)')
 
 
 def check(own):
@@ -99,9 +125,9 @@ def test_one_of_few_is_compiled_here(monkeypatch, directory):
     assert compiled_thirds.overloads and not directory.exists()
 
 
-def entry():
+def entry(own=bound_thirds):
     """Return an entry over a memory of five numbers."""
-    return KernelEntry(bound_thirds, kind_of(Numbers(np.zeros(5))))
+    return KernelEntry(own, kind_of(Numbers(np.zeros(5))))
 
 
 def test_a_bound_kernel_is_made_once(monkeypatch, directory):
@@ -116,9 +142,10 @@ def test_a_bound_kernel_is_made_once(monkeypatch, directory):
         loaded.append(made(entry()))
         assert is_made(entry()) and entry().is_kept()
         no_process(monkeypatch)     # from now on
-        made.cache_clear()
+        large_kernels._made.cache_clear()
         entry_address.cache_clear()
     assert loaded[0] is not loaded[1] and None not in loaded
+    assert not entry().compiled.overloads
     for path in directory.iterdir():
         path.unlink()
     assert not is_made(entry()) and made(entry()) is None
@@ -140,32 +167,86 @@ class Noting:
 
 
 def test_who_watches_is_told_of_each_kernel():
+    """Once, and not of what makes an entry of one."""
     own, began = Noting(), []
     with compilations().watched_by(own), compilations().awaited_by(lambda: began.append(1)):
-        assert made(entry()) is not None
+        assert made(entry(two_calls)) is not None
     assert began == [1]
-    assert own.told == [bound_thirds, bound_thirds, third, 'end', 'end', 'end']
+    assert own.told == [two_calls, third, 'end', half, 'end', 'end']
 
 
 def test_a_process_that_ends_leaves_it_to_numba(monkeypatch, directory):
     """Who watches is told that all ends."""
-    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', """
-import os, pickle, sys
+    monkeypatch.setattr(bitcode, '_PROGRAM', """
+import os, pickle
 told = pickle.load(sys.stdin.buffer).told
 os.write(told, b'entry\\nthird\\n')
 os.kill(os.getpid(), 9)
-"""))
+""")
     entry_address.cache_clear()
     own, numbers = Noting(), Numbers(np.array([1.0, 2.0]))
     with compilations().watched_by(own):
         assert Bound(bound_thirds, numbers).run() == 2
     assert list(numbers.numbers) == [1.0 / 3.0, 2.0 / 3.0]
-    assert own.told == [bound_thirds, third, 'end', 'end'] and not directory.exists()
+    assert own.told == [third, 'end'] and not directory.exists()
 
 
 def test_what_no_object_can_have_is_left_to_numba(directory):
     assert sine(1.2) == math.sin(1.2 / 3.0)
-    assert [path.suffix for path in directory.iterdir()] == ['.bc']
+    with pytest.raises(ValueError, match='below zero'):
+        checked(-1.0)
+    assert not directory.exists()
+
+
+def test_what_numba_keeps_is_taken(monkeypatch):
+    """As where a process was of no use; and values that are no longer those of the sources."""
+    for name, result in (('is_kept', True), ('is_unchanged', False)):
+        large_kernels._made.cache_clear()
+        with monkeypatch.context() as patch:
+            patch.setattr(large_kernels, name, lambda kernel, result=result: result)
+            patch.setattr(large_kernels, 'Told', None)      # nothing is begun
+            assert made(entry()) is None
+
+
+def test_threads_make_one(monkeypatch):
+    """The other one waits."""
+    before, begun = object_making.objects_of_entries, []
+
+    def slow(*given):
+        begun.append(1)
+        time.sleep(0.2)
+        return before(*given)
+    monkeypatch.setattr(object_making, 'objects_of_entries', slow)
+    with ThreadPoolExecutor(2) as pool:
+        first, second = pool.map(made, [entry(), entry()])
+    assert first is second is not None and len(begun) == 1
+
+
+@pytest.mark.parametrize('spoil', [
+    lambda patch: patch.setattr(sys, 'executable', '/none/such'),
+    lambda patch: patch.setattr(sys, 'executable', None),
+    lambda patch: patch.setattr('tempfile.TemporaryFile', refuse),
+    lambda patch: patch.setattr(os, 'pipe', refuse),
+    lambda patch: patch.setattr(bitcode, '_PROGRAM', 'print("no bitcode")'),
+    lambda patch: patch.setattr(bitcode, 'environment', lambda: 'numba 99')],
+    ids=['no program', 'embedded', 'no file', 'no pipe', 'no bitcode', 'another compiler'])
+def test_without_a_process_it_is_numbas(monkeypatch, directory, spoil):
+    with monkeypatch.context() as patch:
+        spoil(patch)
+        assert made(entry()) is None
+    assert not directory.exists()
+
+
+def refuse(*given):
+    """Refuse as the system does."""
+    raise OSError(28, 'No space left on device')
+
+
+def test_an_entry_in_a_function_is_numbas():
+    class Local(NamedTuple):
+        numbers: np.ndarray
+
+    assert made(KernelEntry(bound_thirds, kind_of(Local(np.zeros(5))))) is None
 
 
 def test_what_is_large(monkeypatch):

@@ -97,7 +97,7 @@ print([name for name in ('numba.np.arraymath', 'scipy.linalg') if name in sys.mo
 """
 _NO_PROCESS = """
 from isa_ros.core import bitcode
-bitcode._PROGRAM = ('/none/such',)
+bitcode._PROGRAM = 'raise SystemExit(9)'
 """
 _STAYS = """
 from hashlib import sha256

@@ -78,7 +78,7 @@ def compiled(monkeypatch):
 
 def program(monkeypatch, text):
     """Let processes that make objects run a text of Python."""
-    monkeypatch.setattr(bitcode, '_PROGRAM', (sys.executable, '-c', text))
+    monkeypatch.setattr(bitcode, '_PROGRAM', text)
 
 
 def test_an_object_is_made_elsewhere_and_gives_the_bytes_of_this_process(tmp_path, compiled):
@@ -151,7 +151,7 @@ def test_what_an_object_cannot_have_is_refused(directory):
     with pytest.raises(ConfigError) as refused:
         objects_of([(Called(take_sine, given()),)], OWN)
     assert str(refused.value) == 'object of kernel_take_sine: undefined sin, must have none'
-    assert names_in(directory) == ['bitcode']
+    assert not directory.exists()
 
 
 def test_an_ended_process_is_one_line_and_leaves_nothing(directory, monkeypatch):
@@ -176,7 +176,7 @@ def test_a_process_that_fails_says_why(directory, monkeypatch):
     with pytest.raises(RunError, match='^machine code: its process [0-9]+ ended with exit code 1: '
                                        'ValueError: no way$'):
         objects_of([GROUP], OWN)
-    monkeypatch.setattr(bitcode, '_PROGRAM', ('/none/such',))
+    monkeypatch.setattr(sys, 'executable', '/none/such')
     with pytest.raises(RunError, match='^machine code: no process can be started to make it, No '):
         objects_of([GROUP], OWN)
     assert not directory.exists()
