@@ -50,10 +50,11 @@ def is_large(entry: KernelEntry) -> bool:
     """
     Return whether an entry has so many kernels of this package that a process is worth it.
 
-    None that raises an error of Python: an object ends the process there.
+    None that raises an error of Python: an object ends the process there. Nor a part of another
+    one, which no entry can call.
     """
-    function = entry.kernel.py_func
-    if function.__module__.partition('.')[0] not in PACKAGES or is_set_for_numba():
+    package = entry.kernel.py_func.__module__.partition('.')[0]
+    if package not in PACKAGES or 'inline' in entry.kernel.targetoptions or is_set_for_numba():
         return False
     try:
         kernels = kernels_of(entry.kernel)

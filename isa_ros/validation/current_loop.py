@@ -7,7 +7,7 @@ equations 1 and 2, sampled at 10 kHz through the 12 bit converter. Currents are 
 
 from dataclasses import replace
 
-from isa_ros.actuator.integration import integrated, rk4_step
+from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig
@@ -84,7 +84,7 @@ def _static_gain() -> tuple[float, np.ndarray]:
     state = own.continuous.view(np.recarray)[0].plant.coil
     current = np.empty(round(OPEN_LOOP_S / PLANT_STEP))
     for k in range(len(current)):
-        rk4_step(PLANT_STEP, 0.0, OPEN_LOOP_V, PLANT_STEP, own)
+        rk4_steps(1, PLANT_STEP, OPEN_LOOP_V, own)
         current[k] = coil_current(state, coil)
     return float(current[-1] / OPEN_LOOP_V), current
 

@@ -251,7 +251,8 @@ def test_an_entry_in_a_function_is_numbas():
 
 def test_what_is_large(monkeypatch):
     """Kernels of this package, unless a setting or a value without a text is numba's."""
-    from isa_ros.actuator.integration import rk4_steps
+    from isa_ros.actuator.integration import rk4_step, rk4_steps
+    assert not is_large(KernelEntry(rk4_step, TupleKind(tuple, ()), True))      # a part of others
     step = KernelEntry(rk4_steps, TupleKind(tuple, ()), True)
     assert is_large(step) and is_large(entry())
     with monkeypatch.context() as patch:
