@@ -6,7 +6,7 @@ run none.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, ExitStack
+from contextlib import contextmanager, ExitStack, suppress
 import json
 import os
 from pathlib import Path
@@ -68,7 +68,8 @@ class BitcodeProcess:
                    else f'ended with exit code {code}: {last}')
             raise RunError(f'machine code: its process {self._process.pid} {how}')
         if said and sys.stderr is not None:
-            sys.stderr.write(said)
+            with suppress(OSError, ValueError):     # it may be closed
+                sys.stderr.write(said)
         return _read(self._code)
 
 

@@ -70,10 +70,10 @@ class Kernel:
         """Run what a library has for such arguments; once none has it, it is always compiled."""
         try:
             kinds = tuple(map(kind_of, arguments))
-            call = self._calls.get(kinds) or self._found(kinds)
+            call = None if named else self._calls.get(kinds) or self._found(kinds)
         except UnknownKind:
             call = None
-        if named or call is None:
+        if call is None:
             self._call = self.compiled
             return self.compiled(*arguments, **named)
         return call(arguments)

@@ -133,6 +133,19 @@ def kernels_of(*kernels: Any) -> list[Any]:
             if is_kernel(own.value)]
 
 
+def functions_of(kernel: Any) -> list[Any]:
+    """
+    Return the functions of a kernel and of all that it calls, each once.
+
+    Raises
+    ------
+    UnknownValue
+        One names a value that is not known.
+
+    """
+    return list(_reached([kernel], _read_once))
+
+
 def digest_of(kernels: Iterable[Any]) -> bytes:
     """Return one digest of several kernels, with the values that each named at first sight."""
     return _digest(kernels, _read_once)

@@ -9,13 +9,15 @@ machine code gives the same bytes, and its object is kept.
 from collections.abc import Iterable
 import dis
 from functools import cache, cached_property
+import os
 from threading import RLock
+from types import FunctionType
 from typing import Any
 
 from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_directory import is_kept
-from isa_ros.core.kernel_key import is_unchanged, kernels_of
+from isa_ros.core.kernel_key import functions_of, is_unchanged, kernels_of
 from isa_ros.core.kernel_library import Call, is_set_for_numba
 from isa_ros.core.value_text import UnknownValue
 from isa_ros.errors import ConfigError, RunError
@@ -25,7 +27,16 @@ MANY = 40
 PACKAGES = [__name__.partition('.')[0]]
 """Whose kernels may be lowered."""
 _RAISE = dis.opmap['RAISE_VARARGS']
-_MAKING = RLock()
+_making = RLock()
+
+
+def _make_anew() -> None:
+    """Wait for no thread of the process of which this one is a copy."""
+    global _making
+    _making = RLock()
+
+
+os.register_at_fork(after_in_child=_make_anew)
 
 
 class LargeKernel:
@@ -46,26 +57,33 @@ class LargeKernel:
         return self._code.call(self._symbol)
 
 
+def leave_to_numba() -> None:
+    """Let this process begin no other one: it is one."""
+    PACKAGES.clear()
+
+
 def is_large(entry: KernelEntry) -> bool:
     """
     Return whether an entry has so many kernels of this package that a process is worth it.
 
     None that raises an error of Python: an object ends the process there. Nor a part of another
-    one, which no entry can call.
+    one with its arguments: their types are found by numba, which compiles no part by itself.
     """
     package = entry.kernel.py_func.__module__.partition('.')[0]
-    if package not in PACKAGES or 'inline' in entry.kernel.targetoptions or is_set_for_numba():
+    if package not in PACKAGES or is_set_for_numba():
+        return False
+    if entry.is_called and 'inline' in entry.kernel.targetoptions:
         return False
     try:
-        kernels = kernels_of(entry.kernel)
+        entry.kept_symbol   # it can be kept
+        return len(kernels_of(entry.kernel)) >= MANY and not _raises(functions_of(entry.kernel))
     except UnknownValue:
         return False
-    return len(kernels) >= MANY and not _raises(kernels)
 
 
-def _raises(kernels: Iterable[Any]) -> bool:
+def _raises(functions: Iterable[FunctionType]) -> bool:
     """Return whether one has a ``raise`` or an ``assert``."""
-    return any(_RAISE in own.py_func.__code__.co_code[::2] for own in kernels)
+    return any(_RAISE in own.__code__.co_code[::2] for own in functions)
 
 
 def is_made(entry: KernelEntry) -> bool:
@@ -87,7 +105,7 @@ def made(entry: KernelEntry) -> LargeKernel | None:
     So it is where numba has kept it, where a process is of no use, and where values that its
     kernels name are no longer those of the sources.
     """
-    with _MAKING:   # by one thread
+    with _making:   # by one thread
         return _made(entry)
 
 
@@ -95,16 +113,24 @@ def made(entry: KernelEntry) -> LargeKernel | None:
 def _made(entry: KernelEntry) -> LargeKernel | None:
     if not is_large(entry):
         return None
-    if not is_made(entry) and (is_kept(entry.compiled) or not is_unchanged(entry.kernel)):
+    if not is_made(entry) and (_is_kept_by_numba(entry) or not is_unchanged(entry.kernel)):
         return None
+    from isa_ros.core.loaded_object import can_load
     from isa_ros.core.object_making import objects_of_entries
     from isa_ros.core.objects import own_target
+    if not can_load():
+        return None
     try:
         with Told(entry.kernel) as told:
             code, = objects_of_entries([{entry.kept_symbol: entry}], own_target(), told)
     except (ConfigError, RunError):
         return None     # it allocates, or the process was ended
     return LargeKernel(entry, code)
+
+
+def _is_kept_by_numba(entry: KernelEntry) -> bool:
+    """Return whether numba has compiled it before: a called one without an entry around it."""
+    return is_kept(entry.kernel.compiled if entry.is_called else entry.compiled)
 
 
 class Told:

@@ -1,6 +1,7 @@
 """The machine code of an object, run in this process: it takes no linker."""
 
 import ctypes
+import inspect
 import json
 from typing import Any
 
@@ -11,14 +12,22 @@ import llvmlite.binding as llvm
 _ENGINES: list[Any] = []    # with the code to which addresses refer, until the process ends
 
 
+def can_load() -> bool:
+    """Return whether the compiler can load objects into one block of memory."""
+    return 'use_lmm' in inspect.signature(llvm.create_mcjit_compiler).parameters
+
+
 class LoadedObject:
     """An object of `isa_ros.core.objects`."""
 
     def __init__(self, code: bytes) -> None:
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
+        # In one block of memory: code refers to its numbers by 32 bits, which is not enough where
+        # a large array has left the only room for them far away.
         self._engine = llvm.create_mcjit_compiler(
-            llvm.parse_assembly(''), llvm.Target.from_default_triple().create_target_machine())
+            llvm.parse_assembly(''), llvm.Target.from_default_triple().create_target_machine(),
+            use_lmm=True)
         _ENGINES.append(self._engine)
         self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()

@@ -6,6 +6,7 @@ import sys
 
 from isa_ros.core.kernel import symbols_of
 from isa_ros.core.kernel_cache import environment
+from isa_ros.core.large_kernels import leave_to_numba
 from isa_ros.core.lowering import lower_long
 from isa_ros.core.objects import bitcode_of
 from isa_ros.core.parent import end_with_parent
@@ -32,6 +33,7 @@ def main() -> int:
     end_with_parent()
     with os.fdopen(os.dup(1), 'wb') as out:
         os.dup2(2, 1)   # of what else may be printed
+        leave_to_numba()    # what a module of a class runs while it is imported
         order = pickle.load(sys.stdin.buffer)
         if symbols_of(order.entries) != order.symbols:
             print('a source was edited meanwhile', file=sys.stderr)

@@ -75,6 +75,8 @@ class CompilationReport:
     def end(self) -> None:
         """Count a kernel; clear the terminal's line when the outermost one is finished."""
         with self._lock:
+            if not self._running:
+                return      # it began before this report
             self._running.pop()
             self._finished += 1
             if self._line is not None and self._is_announced and not self._running:

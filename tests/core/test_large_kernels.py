@@ -11,7 +11,7 @@ from isa_ros.core import bitcode, kept_objects, kernel as kernels, kernel_key, l
 from isa_ros.core import object_making
 from isa_ros.core.bound import Bound
 from isa_ros.core.compilations import compilations
-from isa_ros.core.kernel import entry_address, kernel, KernelEntry
+from isa_ros.core.kernel import entry_address, kernel, kernel_function, KernelEntry
 from isa_ros.core.kinds import kind_of, TupleKind
 from isa_ros.core.large_kernels import is_large, is_made, made
 import numpy as np
@@ -79,6 +79,19 @@ def checked(x):
     if x < 0.0:
         raise ValueError('below zero')
     return third(x)
+
+
+@kernel_function
+def guarded(x):
+    """Raise an error; Python calls it too."""
+    if x < 0.0:
+        raise ValueError('below zero')
+    return x
+
+
+@kernel
+def checked_by_another(x):
+    return third(guarded(x))
 
 
 @kernel
@@ -193,8 +206,9 @@ os.kill(os.getpid(), 9)
 
 def test_what_no_object_can_have_is_left_to_numba(directory):
     assert sine(1.2) == math.sin(1.2 / 3.0)
-    with pytest.raises(ValueError, match='below zero'):
-        checked(-1.0)
+    for own in (checked, checked_by_another):
+        with pytest.raises(ValueError, match='below zero'):
+            own(-1.0)
     assert not directory.exists()
 
 
@@ -252,13 +266,17 @@ def test_an_entry_in_a_function_is_numbas():
 def test_what_is_large(monkeypatch):
     """Kernels of this package, unless a setting or a value without a text is numba's."""
     from isa_ros.actuator.integration import rk4_step, rk4_steps
-    assert not is_large(KernelEntry(rk4_step, TupleKind(tuple, ()), True))      # a part of others
+    from isa_ros.actuator.ticking import tick_kernel
+    part = KernelEntry(rk4_step, TupleKind(tuple, ()), True)
+    assert not is_large(part)       # its types are those of what calls it
+    assert is_large(part._replace(is_called=False))
     step = KernelEntry(rk4_steps, TupleKind(tuple, ()), True)
     assert is_large(step) and is_large(entry())
     with monkeypatch.context() as patch:
         patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])
         patch.setattr(large_kernels, 'MANY', 40)
         assert is_large(step) and not is_large(entry())
+        assert is_large(tick_kernel())      # a part of the robot's tick, too
         patch.setattr(large_kernels, 'PACKAGES', ['tests'])
         assert not is_large(step) and not is_large(entry())
         patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])
