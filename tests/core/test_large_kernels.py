@@ -7,7 +7,7 @@ import sys
 import time
 from typing import NamedTuple
 
-from isa_ros.core import bitcode, kept_objects, kernel as kernels, kernel_key, large_kernels
+from isa_ros.core import bitcode, kernel as kernels, kernel_key, large_kernels
 from isa_ros.core import object_making
 from isa_ros.core.bound import Bound
 from isa_ros.core.compilations import compilations
@@ -16,6 +16,8 @@ from isa_ros.core.kinds import kind_of, TupleKind
 from isa_ros.core.large_kernels import is_large, is_made, made
 import numpy as np
 import pytest
+
+pytestmark = pytest.mark.usefixtures('directory')
 
 
 class Numbers(NamedTuple):
@@ -98,19 +100,6 @@ def checked_by_another(x):
 def sine(x):
     """Call a function that no object has."""
     return math.sin(third(x))
-
-
-@pytest.fixture(autouse=True)
-def directory(tmp_path, monkeypatch):
-    """Return an empty directory in which objects are kept; kernels of two are large."""
-    own = tmp_path / 'kept'
-    monkeypatch.setattr(kept_objects, 'CACHE', own)
-    monkeypatch.setattr(kept_objects, 'READ', (own,))
-    monkeypatch.setattr(large_kernels, 'MANY', 2)
-    assert 'tests' in large_kernels.PACKAGES     # by tests/conftest.py
-    monkeypatch.setattr(large_kernels, 'is_kept', lambda kernel: False)
-    large_kernels._made.cache_clear()
-    return own
 
 
 def no_process(monkeypatch):

@@ -19,6 +19,7 @@ from tests.ros.started import Started, started, wait_for
 INTERFACE = 'eth0'
 ADDRESSES = '192.0.2.1', '192.0.2.2'  # RFC 5737: reserved for documentation
 PREFIX_BITS = 24
+_DOWN = re.compile('state (LOWERLAYER)?DOWN')
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,18 @@ class Host:
         self.run('ip', 'link', 'set', 'lo', 'up')
         self.run('ip', 'link', 'set', interface, 'up')
 
+    def wait_for_cable(self) -> None:
+        """
+        Wait until the system has found the other end, which may take a second.
+
+        DDS does not use an interface that is not running when a participant begins.
+        """
+        wait_for(lambda: not _DOWN.search(self._shown()), f'the cable of {self.address}')
+
+    def _shown(self) -> str:
+        return subprocess.run([*self.enter, 'ip', 'link', 'show', INTERFACE], check=True,
+                              capture_output=True, text=True).stdout
+
 
 def why_no_hosts() -> str | None:
     """Return why this machine cannot create hosts; None: it can."""
@@ -70,6 +83,8 @@ def two_hosts() -> Iterator[tuple[Host, Host]]:
         first.plug(INTERFACE, second, INTERFACE)
         first.set_up(INTERFACE)
         second.set_up(INTERFACE)
+        first.wait_for_cable()
+        second.wait_for_cable()
         yield first, second
 
 
@@ -99,6 +114,7 @@ def two_lossy_hosts(
             host.plug(INTERFACE, between, f'port{number}')
             between.set_up(f'port{number}')
             host.set_up(INTERFACE)
+            host.wait_for_cable()
         process = stack.enter_context(started(
             log, 'tests.ros.relay', 'port0', 'port1', str(loss), str(seed),
             prefix=between.enter))

@@ -4,6 +4,7 @@ import io
 
 from isa_ros.actuator.ticking import tick_kernel
 from isa_ros.config.assembly import group_of
+from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_directory import is_kept
 from isa_ros.core.kernel_key import kernels_of
@@ -161,3 +162,15 @@ def test_a_large_kernel_is_shown_with_the_time_it_takes():
     erased = said.getvalue()
     report.refresh()
     assert said.getvalue() == erased and erased.endswith('\r\033[K')
+
+
+def test_the_end_of_what_began_before_the_report_is_not_counted():
+    """As where a thread reports while another one's process makes a kernel."""
+    said = Terminal()
+    with reported_compilation('isa', said, Clock(SILENT_S)):
+        compilations().end()
+        assert said.getvalue() == ''
+        for inner in (1, 2):
+            compilations().start(kernels())
+            compilations().end()
+    assert 'isa: compiling the simulation, 3 kernels' in said.getvalue()
