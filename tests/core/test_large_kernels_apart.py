@@ -10,6 +10,7 @@ from isa_ros.core import object_making
 from isa_ros.core.kernel import kernel
 from isa_ros.core.kernel_key import UnknownValue
 from isa_ros.core.large_kernels import is_large, is_made, made
+from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
 from tests.core.test_large_kernels import entry, sine, third
@@ -120,3 +121,27 @@ def test_without_sources_it_is_numbas(monkeypatch):
         assert not is_large(entry()) and not is_made(entry()) and made(entry()) is None
         patch.setattr(kernels, 'is_kept', lambda kernel: False)
         assert not entry().is_kept()
+
+
+def test_an_object_that_is_kept_comes_before_numba(monkeypatch):
+    """And needs no process."""
+    assert made(entry()) is not None
+    large_kernels._made.cache_clear()
+    monkeypatch.setattr(large_kernels, 'is_kept', lambda own: True)
+    monkeypatch.setattr(bitcode, '_PROGRAM', 'raise SystemExit(9)')
+    assert made(entry()) is not None
+
+
+def test_a_processor_without_objects_is_numbas(monkeypatch):
+    def unknown():
+        raise ConfigError('processor riscv64: none of the targets')
+    monkeypatch.setattr('isa_ros.core.objects.own_target', unknown)
+    assert is_large(entry()) and not is_made(entry()) and made(entry()) is None
+
+
+def test_other_words_in_a_source_leave_what_is_kept(monkeypatch):
+    def refused(kernel):
+        raise AssertionError('the text of a source is read')
+    monkeypatch.setattr(kernel_library, 'source_digest', refused)
+    symbol, = kernels.symbols_of({'thirds': entry()})
+    assert symbol == entry().kept_symbol and symbol.startswith('bound_thirds_')

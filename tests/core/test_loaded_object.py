@@ -1,12 +1,14 @@
 """Objects are loaded wherever there is room, and in no compiler that cannot do so."""
 
+import gc
+from pathlib import Path
 import subprocess
 import sys
 
 from isa_ros.core import large_kernels, loaded_object
 from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kinds import kind_of
-from isa_ros.core.loaded_object import can_load
+from isa_ros.core.loaded_object import can_load, LoadedObject
 from isa_ros.core.object_making import objects_of_entries
 from isa_ros.core.objects import own_target
 import numpy as np
@@ -53,6 +55,26 @@ def test_code_and_its_numbers_lie_together_beside_a_large_array() -> None:
     done = subprocess.run([sys.executable, '-c', _LOAD], input=code, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
     assert done.stdout.decode() == f'{[k / 3.0 for k in range(3)]}\n'
+
+
+def test_code_stays_when_nobody_refers_to_it() -> None:
+    """Addresses of it are in other memories."""
+    code, = objects_of_entries([{'thirds': entry()}], own_target())
+    loaded = LoadedObject(code)
+    address = loaded.address('thirds')
+    assert is_code(address)
+    del loaded
+    gc.collect()
+    assert is_code(address)
+
+
+def is_code(address: int) -> bool:
+    """Return whether this process can run what is there."""
+    for line in Path('/proc/self/maps').read_text().splitlines():
+        first, _, end = line.split()[0].partition('-')
+        if int(first, 16) <= address < int(end, 16):
+            return 'x' in line.split()[1]
+    return False
 
 
 @pytest.mark.usefixtures('directory')
