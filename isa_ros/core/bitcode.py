@@ -120,7 +120,8 @@ def _started(order: BitcodeOrder, asked: IO[bytes], code: IO[bytes],
     """Start the process of an order."""
     asked.write(pickle.dumps(order))
     asked.seek(0)
-    places = [place for place in sys.path if place]     # '' is the folder in which it runs
+    # '' is the folder in which this process runs; that one runs where there is one.
+    places = [os.path.abspath(place) for place in sys.path if place]
     if str(_ROOT) not in places:
         places.insert(0, str(_ROOT))
     program = (sys.executable, '-I', '-c', _FIRST + _PROGRAM, json.dumps(places))

@@ -1,19 +1,19 @@
 """Large kernels beside others: another process, a copy of this one, numba, missing sources."""
 
+import math
 import os
 import sys
 import threading
 import time
 
-from isa_ros.core import bitcode, kernel as kernels, kernel_library, large_kernels
-from isa_ros.core import object_making
+from isa_ros.core import bitcode, kept_objects, kernel as kernels, kernel_library
+from isa_ros.core import large_kernels, object_making
 from isa_ros.core.kernel import kernel
 from isa_ros.core.kernel_key import UnknownValue
 from isa_ros.core.large_kernels import is_large, is_made, made
 from isa_ros.errors import ConfigError
-import numpy as np
 import pytest
-from tests.core.test_large_kernels import entry, sine, third
+from tests.core.test_large_kernels import entry, third
 
 pytestmark = pytest.mark.usefixtures('directory')
 
@@ -21,6 +21,12 @@ pytestmark = pytest.mark.usefixtures('directory')
 @kernel
 def thirds_of_two(x, y):
     return third(x), third(y)
+
+
+@kernel
+def cosine_of_a_third(x):
+    """Call a function that no object has."""
+    return math.cos(third(x))
 
 
 def test_the_process_begins_no_other(monkeypatch):
@@ -100,9 +106,9 @@ def test_a_called_one_that_numba_keeps_begins_no_process(monkeypatch):
     monkeypatch.setattr(object_making, 'objects_of_entries', refuse)
     asked = []
     monkeypatch.setattr(large_kernels, 'is_kept', lambda own: asked.append(own) or True)
-    assert sine(1.3) == np.sin(1.3 / 3.0)
+    assert cosine_of_a_third(1.3) == math.cos(1.3 / 3.0)
     assert made(entry()) is None
-    assert asked == [sine.compiled, entry().compiled]
+    assert asked == [cosine_of_a_third.compiled, entry().compiled]
 
 
 def test_arguments_by_name_are_numbas(monkeypatch):
@@ -145,3 +151,22 @@ def test_other_words_in_a_source_leave_what_is_kept(monkeypatch):
     monkeypatch.setattr(kernel_library, 'source_digest', refused)
     symbol, = kernels.symbols_of({'thirds': entry()})
     assert symbol == entry().kept_symbol and symbol.startswith('bound_thirds_')
+
+
+def test_it_runs_where_the_folder_of_this_one_is_gone(monkeypatch, tmp_path):
+    """And takes modules from the places that this one means, also by names that are not whole."""
+    monkeypatch.chdir(tmp_path.parent)
+    monkeypatch.syspath_prepend(tmp_path.name)
+    monkeypatch.setattr(bitcode, '_PROGRAM', f"""
+assert {str(tmp_path)!r} in sys.path and '' not in sys.path
+""" + bitcode._PROGRAM)
+    assert made(entry()) is not None
+    gone = tmp_path / 'gone'
+    gone.mkdir()
+    monkeypatch.setattr(sys, 'path', list(map(os.path.abspath, sys.path)))
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    for path in kept_objects.CACHE.iterdir():
+        path.unlink()
+    large_kernels._made.cache_clear()
+    assert made(entry()) is not None
