@@ -29,3 +29,30 @@ def test_what_has_waited_in_vain_is_not_called() -> None:
 
 def test_a_process_has_one() -> None:
     assert compilations() is compilations()
+
+
+class Watching:
+    """Notes what it is told."""
+
+    def __init__(self, told: list[tuple[str, object]], name: str) -> None:
+        self._told, self._name = told, name
+
+    def start(self, kernel: object) -> None:
+        """Note the kernel."""
+        self._told.append((self._name, kernel))
+
+    def end(self) -> None:
+        """Note the end."""
+        self._told.append((self._name, 'end'))
+
+
+def test_who_watches_is_told_as_long_as_it_does() -> None:
+    told: list[tuple[str, object]] = []
+    own = Compilations()
+    with own.watched_by(Watching(told, 'outer')):
+        with own.watched_by(Watching(told, 'inner')):
+            own.start('third')
+        own.end()
+    own.start('half')
+    own.end()
+    assert told == [('outer', 'third'), ('inner', 'third'), ('outer', 'end')]

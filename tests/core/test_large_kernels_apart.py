@@ -49,6 +49,15 @@ sys.exit(lowering_process.main())
     assert made(entry()) is not None
 
 
+def test_ctrl_c_is_not_for_it(monkeypatch):
+    """A terminal sends it to all processes of a session's group in the foreground."""
+    monkeypatch.setattr(bitcode, '_PROGRAM', """
+import os
+assert os.getsid(0) == os.getpgrp() == os.getpid()
+""" + bitcode._PROGRAM)
+    assert made(entry()) is not None
+
+
 def test_what_it_says_is_lost_where_nothing_can_be_written(monkeypatch):
     class Closed:
         """Standard error after its end."""
@@ -156,14 +165,15 @@ def test_other_words_in_a_source_leave_what_is_kept(monkeypatch):
 def test_it_runs_where_the_folder_of_this_one_is_gone(monkeypatch, tmp_path):
     """And takes modules from the places that this one means, also by names that are not whole."""
     monkeypatch.chdir(tmp_path.parent)
-    monkeypatch.syspath_prepend(tmp_path.name)
+    monkeypatch.setattr(sys, 'path', [tmp_path.name, '', *filter(None, sys.path)])
     monkeypatch.setattr(bitcode, '_PROGRAM', f"""
-assert {str(tmp_path)!r} in sys.path and '' not in sys.path
+assert {str(tmp_path)!r} in sys.path and sys.flags.isolated
+assert '' not in sys.path and {str(tmp_path.parent)!r} not in sys.path
 """ + bitcode._PROGRAM)
     assert made(entry()) is not None
     gone = tmp_path / 'gone'
     gone.mkdir()
-    monkeypatch.setattr(sys, 'path', list(map(os.path.abspath, sys.path)))
+    monkeypatch.setattr(sys, 'path', ['', *map(os.path.abspath, filter(None, sys.path))])
     monkeypatch.chdir(gone)
     gone.rmdir()
     for path in kept_objects.CACHE.iterdir():
