@@ -7,6 +7,7 @@ import signal
 from typing import Any
 
 from hypothesis import settings
+from isa_ros.core.openblas import without_threads
 import pytest
 from tests.approximation import refusing_approx
 from tests.garbage import uncollected
@@ -28,8 +29,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure() -> None:
-    """Set a ROS_DOMAIN_ID that is refused: a test that starts nodes holds a domain of its own."""
+    """
+    Set what all workers and processes have.
+
+    A ROS_DOMAIN_ID that is refused, as a test that starts nodes holds a domain of its own; and no
+    threads for matrices, as in the programs: other workers have the cores.
+    """
     os.environ['ROS_DOMAIN_ID'] = _NO_DOMAIN
+    without_threads()
 
 
 @pytest.hookimpl(optionalhook=True)

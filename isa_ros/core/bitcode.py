@@ -19,6 +19,7 @@ from typing import BinaryIO, IO, NamedTuple, TextIO
 
 from isa_ros.core.kernel import KernelEntry, symbols_of
 from isa_ros.core.kernel_cache import environment
+from isa_ros.core.openblas import without_threads
 from isa_ros.core.parent import PARENT_VARIABLE
 from isa_ros.errors import RunError
 
@@ -125,6 +126,8 @@ def _started(order: BitcodeOrder, asked: IO[bytes], code: IO[bytes],
     if str(_ROOT) not in places:
         places.insert(0, str(_ROOT))
     program = (sys.executable, '-I', '-c', _FIRST + _PROGRAM, json.dumps(places))
+    inherited = os.environ | {PARENT_VARIABLE: str(os.getpid())}
+    without_threads(inherited)
     return subprocess.Popen(
         program, cwd=_ROOT, stdin=asked, stdout=code, stderr=errors, pass_fds=(order.told,),
-        start_new_session=True, env=os.environ | {PARENT_VARIABLE: str(os.getpid())})
+        start_new_session=True, env=inherited)

@@ -22,7 +22,7 @@ from isa_ros.core.kernel_library import Call, is_set_for_numba
 from isa_ros.core.value_text import UnknownValue
 from isa_ros.errors import ConfigError, RunError
 
-MANY = 40
+MANY = 25
 """Kernels in one: fewer are compiled in this process before another one has begun."""
 PACKAGES = [__name__.partition('.')[0]]
 """Whose kernels may be lowered."""

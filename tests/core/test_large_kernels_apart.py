@@ -58,6 +58,16 @@ assert os.getsid(0) == os.getpgrp() == os.getpid()
     assert made(entry()) is not None
 
 
+def test_its_libraries_begin_no_threads(monkeypatch):
+    monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
+    monkeypatch.setattr(bitcode, '_PROGRAM', """
+import os, numpy
+assert len(os.listdir('/proc/self/task')) == 1
+""" + bitcode._PROGRAM)
+    assert made(entry()) is not None
+    assert 'OPENBLAS_NUM_THREADS' not in os.environ
+
+
 def test_what_it_says_is_lost_where_nothing_can_be_written(monkeypatch):
     class Closed:
         """Standard error after its end."""

@@ -1,4 +1,4 @@
-"""Extensions of a copy's kernels: condition, sensor, load, part of the plant, block."""
+"""Extensions of a copy's kernels: condition, sensor, load, part of the plant, block, wire."""
 
 from tests.docs.patched_copy import PatchedCopy
 
@@ -109,6 +109,12 @@ variants:
         kp: {value: 1.0e-8, source: assumed}
         limit: {value: 1.78e-4, scales_with: spool_travel, source: assumed}
 """
+_WIRE = """\
+bit_rate_mbit: {value: 5.0, source: 'derived, CAN FD'}
+actuator_bits: {value: 600.0, source: assumed}
+frame_bits: {value: 0.0, source: assumed}
+frame_capacity_bits: {value: 0.0, source: assumed}
+"""
 
 
 def add_condition(copied: PatchedCopy) -> None:
@@ -206,3 +212,8 @@ def add_block(copied: PatchedCopy) -> None:
                    '                                  reu.proportional, state.force)\n'
                    f'{linear.replace("if", "elif")}')
     copied.replace('isa_ros/config/data/models/isa_v5.yaml', '\nvariants:\n', _VARIANT)
+
+
+def add_wire(copied: PatchedCopy) -> None:
+    copied.add('isa_ros/config/data/wires/canfd.yaml', _WIRE)
+    copied.replace('isa_ros/actuator/link.py', "'can', 'serial')", "'can', 'serial', 'canfd')")

@@ -12,7 +12,6 @@ from isa_ros.core.kernel_library import MAKERS
 
 ROOT = Path(__file__).parents[2]
 _COPIED = ('isa_ros', 'msg_adapters', 'benchmarks', 'config', 'docs', 'scripts', 'urdf')
-_SKIPPED = shutil.ignore_patterns('__pycache__')
 
 
 class PatchedCopy:
@@ -22,7 +21,7 @@ class PatchedCopy:
         self.root = directory / 'patched'
         """Of the copy."""
         for name in _COPIED:
-            shutil.copytree(source / name, self.root / name, ignore=_SKIPPED)
+            shutil.copytree(source / name, self.root / name)
         shutil.copy(source / 'package.xml', self.root)
         shutil.copy(source / 'pyproject.toml', self.root)
         self._touched: set[str] = set()

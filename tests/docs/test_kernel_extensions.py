@@ -6,11 +6,13 @@ run beside the others.
 """
 
 from pathlib import Path
+import re
 from typing import NamedTuple
 
 from isa_ros.core.conditions import CONDITIONS
 import pytest
-from tests.docs.kernel_patches import add_block, add_condition, add_load, add_part, add_sensor
+from tests.docs.kernel_patches import (
+    add_block, add_condition, add_load, add_part, add_sensor, add_wire)
 from tests.docs.patched_copy import files_of, names_of, PatchedCopy
 
 _TRIPS = """
@@ -76,6 +78,11 @@ for _ in range(2):
     simulation.step()
 print(simulation.samples['ram']['spool_reference'])
 """
+_CYCLES = """
+import isa_ros
+run = isa_ros.load('rig_linear').replace({'link': {'kind': 'canfd', 'cycle_ms': 1.0}})
+print(run.simulate(0.002)['ram.link.age'].shape)
+"""
 _STARTS = """
 import sys
 from pathlib import Path
@@ -116,6 +123,7 @@ class Extended(NamedTuple):
     load: list[str]
     part: list[str]
     block: list[str]
+    wire: list[str]
 
 
 @pytest.fixture(scope='module')
@@ -123,7 +131,7 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Extended:
     """Return a copy of the package with all extensions."""
     copied = PatchedCopy(tmp_path_factory.mktemp('extended'))
     return Extended(copied, *(copied.touched_by(each) for each in (
-        add_condition, add_sensor, add_load, add_part, add_block)))
+        add_condition, add_sensor, add_load, add_part, add_block, add_wire)))
 
 
 @pytest.mark.slow
@@ -180,6 +188,17 @@ def test_a_control_block_is_a_file_a_kind_and_a_branch(extended: Extended) -> No
     assert len(extended.block) == 4
     assert copied.python(_PUSHES) == "True ['1e-09', '1e-08']\n0.0\n"
     assert 'reu.force.kp ' in copied.isa('params', 'isa_v5', '--variant', 'proportional')
+
+
+@pytest.mark.slow
+def test_a_wire_is_its_values_and_a_name(extended: Extended) -> None:
+    """Links may have its kind, and its load is checked."""
+    copied = extended.copied
+    assert names_of(extended.wire) == files_of('wire of a link') and len(extended.wire) == 2
+    listed = copied.isa('params', 'rig_linear', '--set', 'link.kind=canfd', '--set',
+                        'link.cycle_ms=0.2')
+    assert re.search(r'^wire of links: canfd\nparameter.*\nbit_rate_mbit +5 ', listed, re.M)
+    assert copied.python(_CYCLES) == '(3,)\n'
 
 
 @pytest.mark.slow

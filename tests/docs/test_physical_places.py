@@ -1,4 +1,4 @@
-"""Rows of "Places for extensions" about what actuators meet: a body, a supply, a wire."""
+"""Rows of "Places for extensions" about what actuators meet: a body, a supply."""
 
 import re
 import textwrap
@@ -190,21 +190,3 @@ def test_a_supply_is_two_files(copied: PatchedCopy) -> None:
     assert 'lasts_s' in copied.isa(
         'params', 'rig_linear', '--set', 'supply.kind=falling', '--set',
         'supply.lasts_s=1.0')
-
-
-@pytest.mark.slow
-def test_a_wire_is_its_values_and_a_name(copied: PatchedCopy) -> None:
-    """Links may have its kind, and its load is checked."""
-    copied.add('isa_ros/config/data/wires/canfd.yaml', '\n'.join([
-        "bit_rate_mbit: {value: 5.0, source: 'derived, CAN FD'}",
-        'actuator_bits: {value: 600.0, source: assumed}',
-        'frame_bits: {value: 0.0, source: assumed}',
-        'frame_capacity_bits: {value: 0.0, source: assumed}', '']))
-    copied.replace('isa_ros/actuator/link.py', "'can', 'serial')", "'can', 'serial', 'canfd')")
-    assert names_of(copied.touched) == files_of('wire of a link') and len(copied.touched) == 2
-    listed = copied.isa('params', 'rig_linear', '--set', 'link.kind=canfd', '--set',
-                        'link.cycle_ms=0.2')
-    assert re.search(r'^wire of links: canfd\nparameter.*\nbit_rate_mbit +5 ', listed, re.M)
-    assert copied.python(
-        "import isa_ros; run = isa_ros.load('rig_linear').replace({'link': {'kind': 'canfd', "
-        "'cycle_ms': 1.0}}); print(run.simulate(0.002)['ram.link.age'].shape)") == '(3,)\n'
