@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 import os
 from pathlib import Path
 import platform
+import shutil
 import signal
 import subprocess
 import sys
@@ -28,6 +29,7 @@ from scripts.page_blocks import Block, blocks_of, first_line, own_file
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / 'docs' / 'first_tasks.md'
+KERNELS = ROOT / 'isa_ros' / 'kernels'
 PART = 'tasks'
 LONGEST_S = 1200.0
 HEADER = ('', 'task', 'page', 'seen', 'time, s')
@@ -133,12 +135,18 @@ def _run(command: Sequence[str], clone: Path) -> tuple[int, str]:
 
 
 def made_clone(folder: Path, environment: Path | None) -> Path:
-    """Clone this repository into a folder; an environment is linked if one is given."""
+    """
+    Clone this repository into a folder; an environment is linked if one is given.
+
+    Then the clone has the libraries of kernels of this checkout, too, which `./isa` would make.
+    """
     clone = folder / 'isa_ros'
     subprocess.run(['git', 'clone', '--quiet', '--depth', '1', f'file://{ROOT}', str(clone)],
                    check=True)
     if environment:
         (clone / '.venv').symlink_to(environment.resolve())
+        if KERNELS.is_dir():
+            shutil.copytree(KERNELS, clone / KERNELS.relative_to(ROOT))
     return clone
 
 

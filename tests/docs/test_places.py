@@ -25,7 +25,7 @@ CASES = {
     'body': 'test_physical_places.test_a_kind_of_bodies_is_a_class_and_a_row',
     'supply': 'test_physical_places.test_a_supply_is_two_files',
     'load of one actuator': 'test_kernel_extensions.test_a_load_is_a_set_a_force_and_values',
-    'wire of a link': 'test_physical_places.test_a_wire_is_its_values_and_a_name',
+    'wire of a link': 'test_kernel_extensions.test_a_wire_is_its_values_and_a_name',
     'topic of an actuator': 'test_places.test_a_topic_of_an_actuator_is_one_file',
     'object on a bus': 'test_places.test_an_object_with_a_source_is_one_word',
     'option of a run': 'test_places.test_an_option_of_a_run_is_a_field',

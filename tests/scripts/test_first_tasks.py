@@ -95,7 +95,7 @@ def test_the_table_has_what_was_seen_or_why_not(
 def test_some_of_them_are_followed_in_a_clone(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
         capsys: pytest.CaptureFixture[str]) -> None:
-    """With the environment of this test; `./isa` would make one."""
+    """With environment and libraries of this test; `./isa` would make them."""
     with held_domain(monkeypatch):
         code = main([
             str(tmp_path), '--only', '3', '8', '11', '--environment', first_tasks.sys.prefix])
@@ -103,6 +103,9 @@ def test_some_of_them_are_followed_in_a_clone(
     assert code == 0, printed.out
     assert printed.err == '3: done\n8: done\n11: done\n'
     assert [line.split()[0] for line in printed.out.splitlines()[1:]] == ['3', '8', '11']
+    assert (tmp_path / 'isa_ros' / '.venv' / 'bin' / 'python').exists()
+    has_libraries = (tmp_path / 'isa_ros' / 'isa_ros' / 'kernels').is_dir()
+    assert has_libraries == first_tasks.KERNELS.is_dir()
 
 
 def test_a_task_that_fails_gives_exit_code_1(
