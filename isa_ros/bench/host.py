@@ -1,5 +1,6 @@
 """Data of the host: its processors, and the memory and processor time of processes."""
 
+from contextlib import suppress
 import os
 from pathlib import Path
 import platform
@@ -75,6 +76,8 @@ def processor_seconds_of(pid: int) -> float:
 
 def children_of(pid: int) -> list[int]:
     """Return the running child processes of a process."""
-    return sorted(
-        int(child) for listed in (_PROC / str(pid) / 'task').glob('*/children')
-        for child in listed.read_text().split())
+    children: list[int] = []
+    for listed in (_PROC / str(pid) / 'task').glob('*/children'):
+        with suppress(FileNotFoundError, ProcessLookupError):   # the thread has just ended
+            children += map(int, listed.read_text().split())
+    return sorted(children)

@@ -42,7 +42,8 @@ def can_fork() -> bool:
 def _thread_names() -> set[str]:
     names = set()
     for task in Path('/proc/self/task').iterdir():
-        with contextlib.suppress(FileNotFoundError):  # the thread has ended meanwhile
+        # The thread has ended meanwhile, before its file is opened or before it is read.
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
             names.add((task / 'comm').read_text())
     return names
 

@@ -1,10 +1,12 @@
 """The kernel's data on processes."""
 
 import os
+from pathlib import Path
 import subprocess
 import sys
 
 from isa_ros.bench import host
+import pytest
 
 _HOLD_64_MIB = 'b = b"x" * 2**26; print(len(b), flush=True); input()'
 
@@ -20,6 +22,23 @@ def test_a_child_is_seen_with_its_memory_until_it_ends():
         assert 2**26 < size.proportional <= size.resident
         child.communicate(b'\n')
     assert child.pid not in host.children_of(os.getpid())
+
+
+@pytest.mark.parametrize('error', [FileNotFoundError, ProcessLookupError])
+def test_a_thread_that_has_just_ended_has_no_children(error, monkeypatch):
+    """Before its file is opened, or before it is read."""
+    read = Path.read_text
+
+    def read_of_others(path):
+        if path.parent.name == str(os.getpid()):
+            raise error
+        return read(path)
+    monkeypatch.setattr(Path, 'read_text', read_of_others)
+    with subprocess.Popen(['sleep', '60']) as child:
+        assert child.pid not in host.children_of(os.getpid())
+        monkeypatch.undo()
+        assert child.pid in host.children_of(os.getpid())
+        child.kill()
 
 
 def test_processor_time_counts_work():

@@ -13,7 +13,7 @@ from isa_ros.core.bound import Bound
 from isa_ros.core.compilations import compilations
 from isa_ros.core.kernel import entry_address, kernel, kernel_function, KernelEntry
 from isa_ros.core.kinds import kind_of, TupleKind
-from isa_ros.core.large_kernels import is_large, is_made, made
+from isa_ros.core.large_kernels import is_large, is_made, made, MANY
 import numpy as np
 import pytest
 
@@ -256,6 +256,8 @@ def test_what_is_large(monkeypatch):
     """Kernels of this package, unless a setting or a value without a text is numba's."""
     from isa_ros.actuator.integration import rk4_step, rk4_steps
     from isa_ros.actuator.ticking import tick_kernel
+    from isa_ros.plant.sensors import sense
+    from isa_ros.surroundings.bodies.leg.stepping import show
     part = KernelEntry(rk4_step, TupleKind(tuple, ()), True)
     assert not is_large(part)       # its types are those of what calls it
     assert is_large(part._replace(is_called=False))
@@ -263,9 +265,11 @@ def test_what_is_large(monkeypatch):
     assert is_large(step) and is_large(entry())
     with monkeypatch.context() as patch:
         patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])
-        patch.setattr(large_kernels, 'MANY', 40)
+        patch.setattr(large_kernels, 'MANY', MANY)
         assert is_large(step) and not is_large(entry())
         assert is_large(tick_kernel())      # a part of the robot's tick, too
+        assert is_large(KernelEntry(show, TupleKind(tuple, ())))    # of a leg: 30 kernels
+        assert not is_large(KernelEntry(sense, TupleKind(tuple, ())))      # 24
         patch.setattr(large_kernels, 'PACKAGES', ['tests'])
         assert not is_large(step) and not is_large(entry())
         patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])

@@ -1,9 +1,11 @@
 """Forked copies of a process, made by a separate script without other work."""
 
+from pathlib import Path
 import subprocess
 import sys
 import textwrap
 
+from isa_ros.processes import forked
 import pytest
 from tests.ros.domains import held_domain
 
@@ -134,6 +136,15 @@ def test_a_process_with_another_thread_is_not_copied():
         thread.join()
         assert can_fork()
         """)
+
+
+@pytest.mark.parametrize('error', [FileNotFoundError, ProcessLookupError])
+def test_a_thread_that_has_just_ended_has_no_name(error, monkeypatch):
+    """Before its file is opened, or before it is read."""
+    def read(path):
+        raise error
+    monkeypatch.setattr(Path, 'read_text', read)
+    assert forked._thread_names() == set()
 
 
 @pytest.mark.ros

@@ -64,8 +64,8 @@ def image(figure: Figure, kind: str) -> bytes:
     """
     Return a figure as PNG or SVG; equal bytes for the same figure and version.
 
-    The figure stays as it is laid out now: that takes half of the time of a file. As it is saved,
-    it would also be drawn once in vain for it.
+    The figure stays as it is laid out now, which takes as long as to draw it. Saved with a layout
+    to be made, it would be drawn once more, in vain.
     """
     into = io.BytesIO()
     with rc_context({
