@@ -146,7 +146,8 @@ def made_clone(folder: Path, environment: Path | None) -> Path:
     if environment:
         (clone / '.venv').symlink_to(environment.resolve())
         if KERNELS.is_dir():
-            shutil.copytree(KERNELS, clone / KERNELS.relative_to(ROOT))
+            shutil.copytree(KERNELS, clone / KERNELS.relative_to(ROOT),
+                            ignore=shutil.ignore_patterns('.*'))    # what is being made
     return clone
 
 

@@ -30,10 +30,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure() -> None:
     """
-    Set what all workers and processes have.
+    Set what workers and processes that tests start have.
 
     A ROS_DOMAIN_ID that is refused, as a test that starts nodes holds a domain of its own; and no
-    threads for matrices, as in the programs: other workers have the cores.
+    threads for matrices: other workers have the cores.
     """
     os.environ['ROS_DOMAIN_ID'] = _NO_DOMAIN
     without_threads()

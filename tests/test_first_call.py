@@ -194,14 +194,20 @@ def test_kernels_are_made_before_the_first_simulation(ready: Path) -> None:
 
 
 def test_kernels_are_made_before_the_whole_suite(ready: Path) -> None:
-    """For all processors of this kind, by all cores; chosen tests compile what they need."""
+    """
+    For all processors of this kind, by all cores; chosen tests compile what they need.
+
+    A worker for each core and one more.
+    """
+    workers = len(os.sched_getaffinity(0)) + 1
     shutil.copy(ready / 'requirements.txt', ready / 'requirements-test.txt')
     shutil.copy(ready / 'requirements.txt', ready / '.venv' / 'requirements-test.txt')
     made = MADE.replace('\n', ' --own\n')
     assert said(ready, 'test', '-k', 'valve') == ('ran -m pytest -k valve\n', '')
-    assert said(ready, 'test', '-x') == ('ran -c import xdist\nran -m pytest -n auto -x\n', made)
+    assert said(ready, 'test', '-x') == (
+        f'ran -c import xdist\nran -m pytest -n {workers} -x\n', made)
     assert said(ready, 'test', '--quick') == (
-        'ran -c import xdist\nran -m pytest --quick -n auto\n', made)
+        f'ran -c import xdist\nran -m pytest --quick -n {workers}\n', made)
     assert said(ready, 'test', NUMBA_DISABLE_JIT='1')[1] == ''
 
 

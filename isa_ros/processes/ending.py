@@ -14,7 +14,6 @@ import sys
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros.core.openblas import without_threads
 from isa_ros.errors import IsaError, one_line
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, DEFECT, INTERRUPTED = 0, 1, 2, 3, 70, 130
@@ -44,7 +43,7 @@ def run_program(
 
     While it is loaded nothing has begun that must be finished: a signal ends the process at once,
     with exit code ``interrupted``. An exception instead could be swallowed by an imported library.
-    Nothing is collected meanwhile (`uncollected`), and libraries begin no threads for matrices.
+    Nothing is collected meanwhile (`uncollected`).
     """
     def end_at_once(number: int, frame: FrameType | None) -> NoReturn:
         if interrupted:
@@ -54,7 +53,6 @@ def run_program(
 
     try:
         before = replaced_handlers(end_at_once)
-        without_threads()
         try:
             with uncollected():
                 run = load()

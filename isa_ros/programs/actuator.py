@@ -3,12 +3,14 @@
 from collections.abc import Callable
 import sys
 
+from isa_ros.core.openblas import without_threads
 from isa_ros.processes.ending import DONE, run_program
 
 
 def main(model: str = '') -> int:
     """Run one actuator node; without ``model`` its parameter ``model`` names the model."""
     def loaded() -> Callable[[], int]:
+        without_threads()
         from isa_ros.nodes.actuator.process import main as run
         return lambda: run(model=model)
     return run_program('actuator', loaded, interrupted=DONE)

@@ -256,7 +256,6 @@ def test_what_is_large(monkeypatch):
     """Kernels of this package, unless a setting or a value without a text is numba's."""
     from isa_ros.actuator.integration import rk4_step, rk4_steps
     from isa_ros.actuator.ticking import tick_kernel
-    from isa_ros.plant.sensors import sense
     from isa_ros.surroundings.bodies.leg.stepping import show
     part = KernelEntry(rk4_step, TupleKind(tuple, ()), True)
     assert not is_large(part)       # its types are those of what calls it
@@ -269,7 +268,6 @@ def test_what_is_large(monkeypatch):
         assert is_large(step) and not is_large(entry())
         assert is_large(tick_kernel())      # a part of the robot's tick, too
         assert is_large(KernelEntry(show, TupleKind(tuple, ())))    # of a leg: 30 kernels
-        assert not is_large(KernelEntry(sense, TupleKind(tuple, ())))      # 24
         patch.setattr(large_kernels, 'PACKAGES', ['tests'])
         assert not is_large(step) and not is_large(entry())
         patch.setattr(large_kernels, 'PACKAGES', ['isa_ros'])

@@ -14,6 +14,7 @@ from isa_ros.core.large_kernels import is_large, is_made, made
 from isa_ros.errors import ConfigError
 import pytest
 from tests.core.test_large_kernels import entry, third
+from tests.threads import forget_number
 
 pytestmark = pytest.mark.usefixtures('directory')
 
@@ -59,11 +60,12 @@ assert os.getsid(0) == os.getpgrp() == os.getpid()
 
 
 def test_its_libraries_begin_no_threads(monkeypatch):
-    monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
+    forget_number(monkeypatch)
     monkeypatch.setattr(bitcode, '_PROGRAM', """
 import os, numpy
-assert len(os.listdir('/proc/self/task')) == 1
+assert len(os.listdir('/proc/self/task')) == 1 and os.environ['HELD'] == 'here'
 """ + bitcode._PROGRAM)
+    monkeypatch.setenv('HELD', 'here')
     assert made(entry()) is not None
     assert 'OPENBLAS_NUM_THREADS' not in os.environ
 

@@ -11,6 +11,7 @@ import sys
 from isa_ros.core.kernel_library import MAKERS
 
 ROOT = Path(__file__).parents[2]
+_SKIPPED = shutil.ignore_patterns('*.pyc.*', '.*')   # what another process is writing
 _COPIED = ('isa_ros', 'msg_adapters', 'benchmarks', 'config', 'docs', 'scripts', 'urdf')
 
 
@@ -21,7 +22,7 @@ class PatchedCopy:
         self.root = directory / 'patched'
         """Of the copy."""
         for name in _COPIED:
-            shutil.copytree(source / name, self.root / name)
+            shutil.copytree(source / name, self.root / name, ignore=_SKIPPED)
         shutil.copy(source / 'package.xml', self.root)
         shutil.copy(source / 'pyproject.toml', self.root)
         self._touched: set[str] = set()

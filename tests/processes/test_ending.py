@@ -89,17 +89,3 @@ print(run_program('isa', {load}))
 assert gc.isenabled()
 """], capture_output=True, text=True, timeout=60.0)
     assert done.stdout == printed
-
-
-def test_libraries_that_a_program_loads_begin_no_threads() -> None:
-    """Nor do those of the processes that it starts."""
-    done = subprocess.run([sys.executable, '-c', """
-import os
-os.environ.pop('OPENBLAS_NUM_THREADS', None)
-from isa_ros.processes.ending import run_program
-def load():
-    import numpy
-    return lambda: len(os.listdir('/proc/self/task'))
-assert run_program('isa', load) == 1 and os.environ['OPENBLAS_NUM_THREADS'] == '1'
-"""], capture_output=True, text=True, timeout=60.0)
-    assert (done.returncode, done.stderr) == (0, '')

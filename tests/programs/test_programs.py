@@ -7,8 +7,12 @@ import signal
 import subprocess
 import sys
 
+from isa_ros.cli.main import make_parser
+from isa_ros.core.openblas import VARIABLE
 from isa_ros.processes.ending import REPORT_TO
+from isa_ros.programs import actuator, isa
 import pytest
+from tests.threads import forget_number
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = {'isa_ros.programs.actuator': 0, 'isa_ros.programs.coordinator': 130, 'isa_ros': 130}
@@ -74,3 +78,28 @@ def test_a_machine_without_ros_is_told_what_is_missing(imports: Path) -> None:
     assert result.stderr == (
         'actuator: the Python package rclpy is missing; source ROS 2 Jazzy, or use ./isa, which '
         'makes an environment\n')
+
+
+@pytest.mark.parametrize('words, number', [
+    (['params', 'isa_v5'], '1'), (['report'], '1'), (['bringup', 'params'], None),
+    (['--help', 'params'], None), (['replay'], None), ([], None)])
+def test_commands_without_a_run_begin_no_threads_for_matrices(
+        words: list[str], number: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run keeps those of a program of the user, whose controllers have to give the same bits."""
+    forget_number(monkeypatch)
+    monkeypatch.setattr(sys, 'argv', ['isa', *words])
+    isa._loaded()
+    assert os.environ.get(VARIABLE) == number
+
+
+def test_each_of_them_is_a_command() -> None:
+    for name in isa.WITHOUT_RUN:
+        with pytest.raises(SystemExit) as ended:
+            make_parser([name]).parse_args([name, '--help'])
+        assert ended.value.code == 0
+
+
+def test_an_actuator_begins_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    forget_number(monkeypatch)
+    monkeypatch.setattr(actuator, 'run_program', lambda name, load, interrupted: bool(load()))
+    assert actuator.main() and os.environ[VARIABLE] == '1'

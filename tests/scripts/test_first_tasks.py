@@ -103,7 +103,6 @@ def test_some_of_them_are_followed_in_a_clone(
     assert code == 0, printed.out
     assert printed.err == '3: done\n8: done\n11: done\n'
     assert [line.split()[0] for line in printed.out.splitlines()[1:]] == ['3', '8', '11']
-    assert (tmp_path / 'isa_ros' / '.venv' / 'bin' / 'python').exists()
     has_libraries = (tmp_path / 'isa_ros' / 'isa_ros' / 'kernels').is_dir()
     assert has_libraries == first_tasks.KERNELS.is_dir()
 

@@ -64,18 +64,14 @@ def image(figure: Figure, kind: str) -> bytes:
     """
     Return a figure as PNG or SVG; equal bytes for the same figure and version.
 
-    The figure stays as it is laid out now, which takes as long as to draw it. Saved with a layout
-    to be made, it would be drawn once more, in vain.
+    The figure stays as it is laid out now: that takes half of the time of a file.
     """
     into = io.BytesIO()
     with rc_context({
             'svg.hashsalt': _MARK, 'svg.fonttype': 'none', 'figure.autolayout': False,
             'figure.constrained_layout.use': False}):
-        engine = figure.get_layout_engine()
-        if engine is not None:
-            engine.execute(figure)
-            figure.set_layout_engine(None)
         figure.savefig(into, format=kind, metadata=_METADATA[kind])
+        figure.set_layout_engine(None)
     return into.getvalue()
 
 

@@ -12,11 +12,6 @@ import pytest
 
 @pytest.fixture
 def figures():
-    """Return two figures."""
-    return drawn_figures()
-
-
-def drawn_figures():
     """Return two figures with labels that a layout has to make room for."""
     drawn = {}
     for name in ('leg', 'knee'):
@@ -52,14 +47,3 @@ def test_the_same_figures_give_the_same_bytes(tmp_path, figures):
         write_files(tmp_path / name / 'report.html', GENERATOR, figures)
     for name in ('report_leg.png', 'report_leg.svg', 'report_knee.svg'):
         assert (tmp_path / 'a' / name).read_bytes() == (tmp_path / 'b' / name).read_bytes()
-
-
-def test_a_figure_is_drawn_once_for_each_file_and_as_if_it_were_saved(tmp_path, figures):
-    draw = Figure.draw
-    with patch.object(Figure, 'draw', autospec=True, side_effect=draw) as drawn:
-        write_files(tmp_path / 'report.html', GENERATOR, figures)
-    assert drawn.call_count == 2 * len(figures)
-    for name, figure in drawn_figures().items():
-        figure.savefig(tmp_path / 'saved.png', metadata={'Software': 'isa_ros report'})
-        assert (tmp_path / 'saved.png').read_bytes() == (
-            tmp_path / f'report_{name}.png').read_bytes()
