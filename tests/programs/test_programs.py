@@ -81,13 +81,14 @@ def test_a_machine_without_ros_is_told_what_is_missing(imports: Path) -> None:
 
 
 @pytest.mark.parametrize('words, number', [
-    (['params', 'isa_v5'], '1'), (['report'], '1'), (['bringup', 'params'], None),
-    (['--help', 'params'], None), (['replay'], None), ([], None)])
+    (['isa', 'params', 'isa_v5'], '1'), (['isa', 'report'], '1'), (['isa'], None),
+    (['isa', 'bringup', 'params'], None), (['isa', '--help', 'params'], None),
+    (['params', 'replay'], None)])
 def test_commands_without_a_run_begin_no_threads_for_matrices(
         words: list[str], number: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run keeps those of a program of the user, whose controllers have to give the same bits."""
     forget_number(monkeypatch)
-    monkeypatch.setattr(sys, 'argv', ['isa', *words])
+    monkeypatch.setattr(sys, 'argv', words)
     isa._loaded()
     assert os.environ.get(VARIABLE) == number
 
