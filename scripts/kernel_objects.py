@@ -1,13 +1,19 @@
-"""Objects of kernels in a directory: each is made once, by the process that needs it first."""
+"""
+Objects of kernels in a directory: each is made once, by the process that needs it first.
 
+Its bitcode is kept: what an edit leaves as it is, and an export, need not be lowered again.
+"""
+
+from collections.abc import Iterable
 import ctypes
 from pathlib import Path
 import tempfile
 from typing import NamedTuple
 
+from isa_ros.core.kept_objects import bitcode_name, keep, kept
 from isa_ros.core.kernel import KernelEntry
 from isa_ros.core.kernel_library import address_in, Call, call_in
-from isa_ros.core.objects import library_of, object_of, own_target, TARGETS
+from isa_ros.core.objects import bitcode_of, library_of, object_of, own_target, TARGETS
 from isa_ros.errors import ConfigError
 
 
@@ -23,14 +29,24 @@ class Objects(NamedTuple):
 
     def make(self, entry: KernelEntry) -> dict[str, str]:
         """Make those of an entry that are missing; return why a target has none."""
+        missing = [name for name in dict.fromkeys((*self.targets, own_target().name))
+                   if not self.path(entry.symbol, name).exists()]
+        return self._made(entry, missing) if missing else {}
+
+    def _made(self, entry: KernelEntry, targets: Iterable[str]) -> dict[str, str]:
+        """Make those for targets, of bitcode that is kept; return why one has none."""
+        kept_name = bitcode_name(entry)
+        found = kept(kept_name)
+        code = found or bitcode_of(entry)
         refused = {}
-        for name in dict.fromkeys((*self.targets, own_target().name)):
-            path = self.path(entry.symbol, name)
-            if not path.exists():
-                try:
-                    _write(path, object_of({entry.symbol: entry}, TARGETS[name]))
-                except ConfigError as error:
-                    refused[name] = str(error).rpartition(': ')[2]
+        for name in targets:
+            try:
+                _write(self.path(entry.symbol, name),
+                       object_of({entry.symbol: code}, TARGETS[name]))
+            except ConfigError as error:
+                refused[name] = str(error).rpartition(': ')[2]
+        if found is None and not refused:
+            keep(kept_name, code)
         return refused
 
     def address(self, entry: KernelEntry) -> int:

@@ -5,7 +5,7 @@ Numba compiles none of them in this one: that one lowers them (`isa_ros.core.low
 run none.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, ExitStack, suppress
 import json
 import os
@@ -21,7 +21,7 @@ from isa_ros.core.kernel import KernelEntry, symbols_of
 from isa_ros.core.kernel_cache import environment
 from isa_ros.core.openblas import without_threads
 from isa_ros.core.parent import PARENT_VARIABLE
-from isa_ros.errors import RunError
+from isa_ros.errors import one_line, RunError
 
 _ROOT = Path(__file__).parents[2]
 _FIRST = 'import json, sys; sys.path[:] = json.loads(sys.argv[1])\n'
@@ -32,8 +32,7 @@ _PROGRAM = 'from isa_ros.core.lowering_process import main; sys.exit(main())'
 class BitcodeOrder(NamedTuple):
     """What a process makes bitcode of."""
 
-    entries: Mapping[str, KernelEntry]
-    """By exported name."""
+    entries: tuple[KernelEntry, ...]
     symbols: tuple[str, ...] | None
     """What they were when they were asked for."""
     environment: str
@@ -49,9 +48,9 @@ class BitcodeProcess:
                  errors: BinaryIO) -> None:
         self._process, self._told, self._code, self._errors = process, told, code, errors
 
-    def bitcode(self, tell: Callable[[str], object] = str) -> bytes:
+    def bitcodes(self, tell: Callable[[str], object] = str) -> tuple[bytes, ...]:
         """
-        Return the bitcode when it is made; ``tell`` is called with each line told meanwhile.
+        Return that of each entry when all is made; ``tell`` is called with lines told meanwhile.
 
         Raises
         ------
@@ -71,7 +70,11 @@ class BitcodeProcess:
         if said and sys.stderr is not None:
             with suppress(OSError, ValueError):     # it may be closed
                 sys.stderr.write(said)
-        return _read(self._code)
+        try:
+            made: tuple[bytes, ...] = pickle.loads(_read(self._code))
+        except (EOFError, pickle.UnpicklingError) as error:
+            raise RunError(f'machine code: {one_line(str(error))}') from error
+        return made
 
 
 def _read(file: BinaryIO) -> bytes:
@@ -81,9 +84,9 @@ def _read(file: BinaryIO) -> bytes:
 
 
 @contextmanager
-def lowering(entries: Mapping[str, KernelEntry]) -> Iterator[BitcodeProcess]:
+def lowering(entries: tuple[KernelEntry, ...]) -> Iterator[BitcodeProcess]:
     """
-    Start a process that lowers entries by exported names; it does not outlive the context.
+    Start a process that lowers entries; it does not outlive the context.
 
     Nor does it outlive this process. Modules of the folder in which this one runs are not taken.
     Ctrl-C is for this process alone.

@@ -1,6 +1,6 @@
-"""Objects of entries in the directory of compiled kernels: a machine makes each once."""
+"""Bitcode and objects of entries in the directory of compiled kernels: a machine makes each once."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import hashlib
 
 from isa_ros.core.kept_files import read_kept, write_kept
@@ -11,21 +11,29 @@ from isa_ros.core.objects import Target
 from numba.core.registry import cpu_target
 
 
-def kept_name(entries: Mapping[str, KernelEntry], target: Target | None = None) -> str | None:
-    """
-    Return the name of the file of an object, None: it cannot be kept.
+def bitcode_name(entry: KernelEntry) -> str | None:
+    """Return the name of the file of an entry's bitcode, None: it cannot be kept."""
+    return _name('bitcode', (entry,), 'bc')
 
-    Without a ``target`` it is that of the bitcode of which the objects of all are made. It has a
-    digest of all that these depend on: the entries and their names, the target, the processor for
-    which they were optimised, and the versions of the compiler.
+
+def object_name(entries: Mapping[str, KernelEntry], target: Target) -> str | None:
+    """Return the name of the file of an object of entries by names, None: it cannot be kept."""
+    return _name(target.name, entries.values(), 'o', target, tuple(entries))
+
+
+def _name(kind: str, entries: Iterable[KernelEntry], end: str, *given: object) -> str | None:
+    """
+    Return the name of a file.
+
+    It has a digest of all that its content depends on: what is given, the entries, the processor
+    for which they were optimised, and the versions of the compiler.
     """
     symbols = symbols_of(entries)
     if symbols is None:
         return None
     processor = cpu_target.target_context.codegen().magic_tuple()
-    text = repr((environment(), processor, target, tuple(entries), symbols))
-    digest = hashlib.sha256(text.encode()).hexdigest()[:32]
-    return f'bitcode-{digest}.bc' if target is None else f'{target.name}-{digest}.o'
+    text = repr((environment(), processor, symbols, *given))
+    return f'{kind}-{hashlib.sha256(text.encode()).hexdigest()[:32]}.{end}'
 
 
 def kept(name: str | None) -> bytes | None:

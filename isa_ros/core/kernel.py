@@ -6,7 +6,7 @@ libraries of kernels (`kernel_library`), and only a kernel that none of them has
 a large one by a process of its own (`large_kernels`).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 from functools import cache, cached_property, update_wrapper
 import os
 from typing import Any, NamedTuple, TypeVar
@@ -180,9 +180,9 @@ def entry_of(function: Any, kind: Kind) -> KernelEntry:
     return KernelEntry(function, kind)
 
 
-def symbols_of(entries: Mapping[str, KernelEntry]) -> tuple[str, ...] | None:
+def symbols_of(entries: Iterable[KernelEntry]) -> tuple[str, ...] | None:
     """Return what entries are now, as they are kept; None: that is not known."""
     try:
-        return tuple(entry.kept_symbol for entry in entries.values())
+        return tuple(entry.kept_symbol for entry in entries)
     except UnknownValue:
         return None

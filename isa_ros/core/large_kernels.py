@@ -90,10 +90,10 @@ def is_made(entry: KernelEntry) -> bool:
     """Return whether a large entry need not be made."""
     if not is_large(entry):
         return False
-    from isa_ros.core.kept_objects import kept, kept_name
+    from isa_ros.core.kept_objects import kept, object_name
     from isa_ros.core.objects import own_target
     try:
-        return kept(kept_name({entry.kept_symbol: entry}, own_target())) is not None
+        return kept(object_name({entry.kept_symbol: entry}, own_target())) is not None
     except ConfigError:
         return False    # no object can be made for this processor
 

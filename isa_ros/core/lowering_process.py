@@ -43,5 +43,5 @@ def main() -> int:
             return 1
         lower_long()    # and run no kernel from now on
         with install_listener('numba:compile', LinesOfKernels(order.told)):
-            out.write(bitcode_of(order.entries))
+            pickle.dump(tuple(map(bitcode_of, order.entries)), out)
     return 0

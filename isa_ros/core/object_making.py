@@ -1,17 +1,17 @@
 """
 Objects of entries, made once by a machine.
 
-A process of its own gives the bitcode (`isa_ros.core.bitcode`) of which the object of each target
-is made here. Bitcode and objects are kept.
+A process of its own gives the bitcode of each (`isa_ros.core.bitcode`) of which the objects of all
+targets are made here. Bitcode and objects are kept.
 """
 
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 
 from isa_ros.core.bitcode import lowering
-from isa_ros.core.kept_objects import keep, kept, kept_name
+from isa_ros.core.kept_objects import bitcode_name, keep, kept, object_name
 from isa_ros.core.kernel import IS_COMPILED, KernelEntry
-from isa_ros.core.objects import object_of_bitcode, Target
+from isa_ros.core.objects import object_of, Target
 from isa_ros.errors import ConfigError
 
 
@@ -39,26 +39,30 @@ def objects_of_entries(
 
 
 class _Object:
-    """The object of a group of entries: kept, or of kept bitcode, or of that of a process."""
+    """The object of a group of entries: kept, or made of bitcode that is kept or of a process."""
 
     def __init__(
             self, entries: Mapping[str, KernelEntry], target: Target, stack: ExitStack) -> None:
         """Start a process, if one is needed, which ends with the context at the latest."""
-        self._entries, self._target = entries, target
-        self._name, self._bitcode_name = kept_name(entries, target), kept_name(entries)
-        self._code, self._bitcode = kept(self._name), kept(self._bitcode_name)
-        self._lowering = None if self._code or self._bitcode else stack.enter_context(
-            lowering(entries))
+        self._target, self._name = target, object_name(entries, target)
+        self._code = kept(self._name)
+        self._bitcodes: dict[str, bytes | None] = {}
+        self._lowered: dict[str, KernelEntry] = {}
+        if self._code is None:
+            self._bitcodes = {name: kept(bitcode_name(own)) for name, own in entries.items()}
+            self._lowered = {name: entries[name]
+                             for name, code in self._bitcodes.items() if code is None}
+        self._lowering = stack.enter_context(
+            lowering(tuple(self._lowered.values()))) if self._lowered else None
 
     def code(self, tell: Callable[[str], object]) -> bytes:
         """Return it, made now if need be; raises as `objects_of_entries`."""
         if self._code is None:
-            bitcode = self._bitcode
-            if self._lowering is not None:
-                bitcode = self._lowering.bitcode(tell)
-            assert bitcode is not None
-            self._code = object_of_bitcode(bitcode, self._entries, self._target)
-            if self._lowering is not None:
-                keep(self._bitcode_name, bitcode)
+            made = () if self._lowering is None else self._lowering.bitcodes(tell)
+            self._bitcodes.update(zip(self._lowered, made))
+            self._code = object_of(
+                {name: code for name, code in self._bitcodes.items() if code}, self._target)
+            for entry, code in zip(self._lowered.values(), made):
+                keep(bitcode_name(entry), code)
             keep(self._name, self._code)
         return self._code

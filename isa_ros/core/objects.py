@@ -7,9 +7,10 @@ kernel takes and are removed. Its machine code gives the same bytes as that comp
 the same instructions of LLVM, which nothing may reorder or contract.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import json
 from pathlib import Path
+import re
 import shutil
 import subprocess
 import tempfile
@@ -38,6 +39,7 @@ TARGETS: Mapping[str, Target] = {target.name: target for target in (
     Target('x86-64', 'x86_64-unknown-linux-gnu', 'x86-64'),
     Target('aarch64', 'aarch64-unknown-linux-gnu', 'generic'))}
 """By name; of one architecture the fastest first."""
+_LENGTH = re.compile('[1-9][0-9]*')
 _COUNTED = 'llvm.x86.atomic.sub.cc.i64'
 _V3 = ('avx2', 'bmi', 'bmi2', 'f16c', 'fma', 'lzcnt', 'movbe')
 """What x86-64-v3 has beyond x86-64, as LLVM names it."""
@@ -62,67 +64,82 @@ def own_target() -> Target:
     raise ConfigError(f'processor {architecture}: no target, valid: {", ".join(TARGETS)}')
 
 
-def object_of(entries: Mapping[str, KernelEntry], target: Target) -> bytes:
+def bitcode_of(entry: KernelEntry) -> bytes:
     """
-    Return the object file (ELF) of entries by exported names.
+    Return the bitcode of an entry, optimised for this processor: `object_of` makes objects of it.
+
+    An entry that is neither compiled nor kept is compiled, and so kept.
+    """
+    target = own_target()
+    machine = _machine(target)
+    module = _retargeted(_module_of(entry), target, machine)
+    _remove_unused(module, machine)
+    _name_inner(module)
+    code: bytes = module.as_bitcode()
+    return code
+
+
+def _name_inner(module: Any) -> None:
+    """
+    Name what is not seen outside by its kernel, and its place in the module.
+
+    The names of numba have numbers of what the process has compiled before.
+    """
+    for k, own in enumerate((*module.functions, *module.global_variables)):
+        if own.linkage is llvm.Linkage.internal:
+            own.name = f'{_kernel_name(own.name) if own.is_function else "constant"}.{k}'
+
+
+def _kernel_name(name: str) -> str:
+    """Return the name of a kernel with its module; numba's has the length of each word before."""
+    words, rest = [], name.removeprefix('_ZN')
+    while length := _LENGTH.match(rest):
+        end = length.end() + int(length[0])
+        words.append(rest[length.end():end])
+        rest = rest[end:]
+    return '.'.join(words) or name
+
+
+def object_of(codes: Mapping[str, bytes], target: Target) -> bytes:
+    """
+    Return the object file (ELF) of entries by exported names, of the bitcode of each.
 
     Each has the C signature ``int64_t name(const int64_t *table)``; all else is internal, but for
-    the text that says what a called entry returns. Entries that are neither compiled nor kept are
-    compiled, and so kept. One that raises an error of Python ends the process.
+    the text that says what a called entry returns. One that raises an error of Python ends the
+    process.
 
     Raises
     ------
     ConfigError
         The object would have undefined symbols; they are named.
-
-    """
-    return _emitted(_linked(entries), ', '.join(entries), target)
-
-
-def bitcode_of(entries: Mapping[str, KernelEntry]) -> bytes:
-    """Return what `object_of` makes the objects of all targets of, for `object_of_bitcode`."""
-    code: bytes = _linked(entries).as_bitcode()
-    return code
-
-
-def object_of_bitcode(bitcode: bytes, names: Iterable[str], target: Target) -> bytes:
-    """
-    Return the object of entries by `bitcode_of` and their names; raises as `object_of`.
-
-    Raises
-    ------
     RunError
-        The bitcode is not whole.
+        A bitcode is not whole.
 
     """
-    try:
-        module = llvm.parse_bitcode(bitcode)
-    except RuntimeError as error:
-        raise RunError(f'machine code: {one_line(str(error))}') from error
-    return _emitted(module, ', '.join(names), target)
-
-
-def _linked(entries: Mapping[str, KernelEntry]) -> Any:
-    """Return a module of entries and what they call, optimised for this processor."""
-    target = own_target()
     machine = _machine(target)
     whole = _retargeted(llvm.parse_assembly(RUNTIME), target, machine)
-    for name, entry in entries.items():
-        whole.link_in(_retargeted(_module_of(name, entry), target, machine))
+    for name, code in codes.items():
+        whole.link_in(_retargeted(_named(code, name), target, machine))
     _remove_unused(whole, machine)
-    return whole
-
-
-def _emitted(module: Any, names: str, target: Target) -> bytes:
-    """Return the object of a module; raises as `object_of`."""
-    machine = _machine(target)
-    undefined = _foreign_instructions(module, target)
-    code: bytes = b'' if undefined else machine.emit_object(
-        _retargeted(module, target, machine))
-    undefined = undefined or undefined_symbols(code)
+    undefined = _foreign_instructions(whole, target)
+    made: bytes = b'' if undefined else machine.emit_object(whole)
+    undefined = undefined or undefined_symbols(made)
     if undefined:
+        names = ', '.join(codes)
         raise ConfigError(f'object of {names}: undefined {", ".join(undefined)}, must have none')
-    return code
+    return made
+
+
+def _named(code: bytes, name: str) -> Any:
+    """Return the module of an entry, which gets its exported name."""
+    try:
+        module = llvm.parse_bitcode(code)
+    except RuntimeError as error:
+        raise RunError(f'machine code: {one_line(str(error))}') from error
+    for own in (*module.functions, *module.global_variables):
+        if own.name in (ENTRY, result_symbol(ENTRY)):
+            own.name = name + own.name.removeprefix(ENTRY)
+    return module
 
 
 def _foreign_instructions(module: Any, target: Target) -> list[str]:
@@ -148,14 +165,17 @@ def _machine(target: Target) -> Any:
         cpu=target.cpu, opt=3, reloc='pic', codemodel='default')
 
 
-_ENTRY = """
-declare i32 @{own}(ptr, ptr, ptr)
+ENTRY = 'entry'
+"""The name of an entry in its bitcode."""
+_OWN = 'own_entry'
+_ENTRY = f"""
+declare i32 @{_OWN}(ptr, ptr, ptr)
 declare void @llvm.trap()
-define i64 @{name}(ptr %table) {{
+define i64 @{ENTRY}(ptr %table) {{
   %result = alloca i64
   %error = alloca ptr
   store i64 0, ptr %result
-  %status = call i32 @{own}(ptr %result, ptr %error, ptr %table)
+  %status = call i32 @{_OWN}(ptr %result, ptr %error, ptr %table)
   %is_done = icmp eq i32 %status, 0
   br i1 %is_done, label %done, label %raised
 raised:
@@ -171,26 +191,25 @@ _TEXT = """
 """
 
 
-def _module_of(name: str, entry: KernelEntry) -> Any:
+def _module_of(entry: KernelEntry) -> Any:
     """Return a module with an entry, of which nothing else is seen outside."""
     made = compiled_entry(entry)
     module = made.library._get_module_for_linking().clone()
-    own = f'own_{name}'
     for function in module.functions:
         if function.name == made.fndesc.llvm_func_name:
-            function.name = own
+            function.name = _OWN
         if not function.is_declaration:
-            function.linkage = 'internal' if function.name != own else 'external'
+            function.linkage = 'internal' if function.name != _OWN else 'external'
     for variable in module.global_variables:
         if not variable.is_declaration:
             variable.linkage = 'internal'
-    text = _ENTRY.format(name=name, own=own)
+    text = _ENTRY
     if entry.is_called:
         form = json.dumps(result_form(result_of(entry)))
         text += _TEXT.format(
-            name=result_symbol(name), size=len(form) + 1, text=form.replace('"', '\\22'))
+            name=result_symbol(ENTRY), size=len(form) + 1, text=form.replace('"', '\\22'))
     module.link_in(llvm.parse_assembly(text))
-    module.get_function(own).linkage = 'internal'
+    module.get_function(_OWN).linkage = 'internal'
     return _portable(module)
 
 

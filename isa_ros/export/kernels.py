@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from isa_ros.core.kept_objects import kept, kept_name
+from isa_ros.core.kept_objects import kept, object_name
 from isa_ros.core.kernel import entry_of, KernelEntry
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.object_making import objects_of_entries
@@ -17,7 +17,7 @@ def entries_of(kernels: Iterable[Called]) -> dict[str, KernelEntry]:
 
 def are_kept(groups: Iterable[Iterable[Called]], target: Target) -> bool:
     """Return whether the objects of all groups of kernels are kept for a target."""
-    return all(kept(kept_name(entries_of(own), target)) is not None for own in groups)
+    return all(kept(object_name(entries_of(own), target)) is not None for own in groups)
 
 
 def objects_of(groups: Iterable[Iterable[Called]], target: Target) -> tuple[bytes, ...]:

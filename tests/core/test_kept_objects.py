@@ -1,7 +1,7 @@
 """Kept objects: found again by all that they depend on, and by nothing less."""
 
 from isa_ros.core import kept_objects
-from isa_ros.core.kept_objects import keep, kept, kept_name
+from isa_ros.core.kept_objects import bitcode_name, keep, kept, object_name
 from isa_ros.core.kernel import entry_of, kernel, symbols_of
 from isa_ros.core.kernel_cache import say_not_kept
 from isa_ros.core.kinds import kind_of
@@ -31,10 +31,10 @@ def entries():
 
 
 def test_what_is_kept_is_found_in_each_directory(directory, tmp_path):
-    name = kept_name(entries(), V3)
+    name = object_name(entries(), V3)
     assert kept(name) is None
     keep(name, b'code')
-    assert kept(kept_name(entries(), V3)) == b'code'
+    assert kept(object_name(entries(), V3)) == b'code'
     assert [path.name for path in directory.iterdir()] == [name]
     directory.rename(tmp_path / 'of_all')
     assert kept(name) == b'code'
@@ -52,11 +52,12 @@ def other(own):
 def test_what_an_object_depends_on_is_in_its_name(monkeypatch):
     own = entries()
     count_kind = own['counted'].kind
-    names = [kept_name(*given) for given in (
-        (own,), (own, V3), (own, V1), (own, V3._replace(cpu='znver4')),
+    others = (entry_of(other, count_kind), entry_of(count, kind_of(Rows(np.zeros(1)))))
+    names = [object_name(*given) for given in (
+        (own, V3), (own, V1), (own, V3._replace(cpu='znver4')),
         ({'moved': own['moved']}, V3), ({'tick': own['moved'], 'counted': own['counted']}, V3),
-        (own | {'counted': entry_of(other, count_kind)}, V3),
-        (own | {'counted': entry_of(count, kind_of(Rows(np.zeros(1))))}, V3))]
+        *((own | {'counted': entry}, V3) for entry in others))]
+    names += map(bitcode_name, (*own.values(), *others))
     context = kept_objects.cpu_target.target_context
 
     class Codegen:
@@ -64,11 +65,12 @@ def test_what_an_object_depends_on_is_in_its_name(monkeypatch):
             return 'x86_64', 'another', ''
     with monkeypatch.context() as patch:
         patch.setattr(context, 'codegen', Codegen)
-        names.append(kept_name(own, V3))
+        names += [object_name(own, V3), bitcode_name(own['moved'])]
     monkeypatch.setattr(kept_objects, 'environment', lambda: 'numba 99')
-    names.append(kept_name(own, V3))
-    assert len(set(names)) == len(names) == 10
-    assert [name.rpartition('-')[0] for name in names[:3]] == ['bitcode', 'x86-64-v3', 'x86-64']
+    names += [object_name(own, V3), bitcode_name(own['moved'])]
+    assert len(set(names)) == len(names) == 15
+    kinds = [name.rpartition('-')[0] for name in names]
+    assert kinds[:2] == ['x86-64-v3', 'x86-64'] and kinds[7:11] == ['bitcode'] * 4
 
 
 def test_what_has_no_name_is_not_kept(directory, monkeypatch, capsys):
@@ -76,7 +78,8 @@ def test_what_has_no_name_is_not_kept(directory, monkeypatch, capsys):
         raise UnknownValue('source a.py')
     from isa_ros.core import kernel as kernels
     monkeypatch.setattr(kernels, 'kept_symbol_of', refuse)
-    assert symbols_of(entries()) is None and kept_name(entries(), V3) is None
+    assert symbols_of(entries().values()) is None and object_name(entries(), V3) is None
+    assert bitcode_name(entries()['moved']) is None
     keep(None, b'code')
     assert kept(None) is None and not directory.exists()
     line, = capsys.readouterr().err.splitlines()

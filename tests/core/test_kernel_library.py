@@ -12,9 +12,10 @@ from isa_ros.core.bound import Bound
 from isa_ros.core.kernel import kernel, KernelEntry
 from isa_ros.core.kernel_library import own_targets, symbol_of
 from isa_ros.core.kinds import kind_of, TupleKind
-from isa_ros.core.objects import library_of, object_of, own_target
+from isa_ros.core.objects import library_of, own_target
 import numpy as np
 import pytest
+from tests.objects import made_object
 
 MASS = np.dtype([('x', 'f8'), ('n', 'i8')])
 SOURCE = """
@@ -74,7 +75,7 @@ def home(tmp_path_factory):
     entries = [KernelEntry(getattr(own, name), kind_of(arguments), is_called=True)
                for name, several in calls.items() for arguments in several]
     entries.append(KernelEntry(own.count, kind_of(own.Rows(np.zeros(2, np.int64)))))
-    code = object_of({entry.symbol: entry for entry in entries}, own_target())
+    code = made_object({entry.symbol: entry for entry in entries}, own_target())
     library_of([code], path / f'{own_target().name}.so')
     return path
 
@@ -211,7 +212,7 @@ def pick(own):
 def test_a_kernel_that_raises_ends_the_process(tmp_path):
     rows = Rows(np.array([1]))
     entry = KernelEntry(pick, kind_of(rows))
-    library_of([object_of({'isa_pick': entry}, own_target())], tmp_path / 'lib.so')
+    library_of([made_object({'isa_pick': entry}, own_target())], tmp_path / 'lib.so')
     program = f"""
 import ctypes, sys
 import numpy as np

@@ -170,7 +170,7 @@ def test_other_words_in_a_source_leave_what_is_kept(monkeypatch):
     def refused(kernel):
         raise AssertionError('the text of a source is read')
     monkeypatch.setattr(kernel_library, 'source_digest', refused)
-    symbol, = kernels.symbols_of({'thirds': entry()})
+    symbol, = kernels.symbols_of((entry(),))
     assert symbol == entry().kept_symbol and symbol.startswith('bound_thirds_')
 
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 from isa_ros.core.bound import Bound
+from isa_ros.core.elf import symbols
 from isa_ros.core.kernel import kernel
 from isa_ros.core.lowering import LARGE
 import numpy as np
@@ -19,11 +20,12 @@ import sys
 from isa_ros.core import lowering
 lowering.LARGE = int(sys.argv[1])
 lowering.lower_only()
-from isa_ros.core.objects import library_of, object_of, own_target
+from isa_ros.core.objects import library_of, own_target
 from isa_ros.core.compiler import compiled_entry
 from isa_ros.core.kernel import entry_of
 from isa_ros.core.kinds import kind_of
 from tests.core.test_lowering import memory, move, outer
+from tests.objects import made_object
 """
 
 
@@ -49,7 +51,7 @@ def lowered(program: str, *arguments: object, large: int = LARGE) -> str:
 
 
 OBJECT = """
-code = object_of({'moved': entry_of(move, kind_of(memory()))}, own_target())
+code = made_object({'moved': entry_of(move, kind_of(memory()))}, own_target())
 library_of([code], Path(sys.argv[2]))
 """
 
@@ -84,6 +86,24 @@ def test_nothing_is_kept(tmp_path, monkeypatch):
     lowered(OBJECT, second)
     assert {path.name for path in (tmp_path / 'kept').rglob('*.*')} == names
     assert first.read_bytes() == second.read_bytes()
+
+
+AFTER_OTHERS = """
+if sys.argv[2] == 'after others':
+    made_object({'other': entry_of(outer, kind_of(memory()))}, own_target())
+code = made_object({'moved': entry_of(move, kind_of(memory()))}, own_target())
+Path(sys.argv[3]).write_bytes(code)
+"""
+
+
+def test_an_object_has_the_same_bytes_whatever_was_lowered_before(tmp_path):
+    """Names of what is within are those of its kernels, without the numbers of numba."""
+    for order in ('alone', 'after others'):
+        lowered(AFTER_OTHERS, order, tmp_path / order)
+    code = (tmp_path / 'alone').read_bytes()
+    assert code == (tmp_path / 'after others').read_bytes()
+    inner_names = {symbol.name for symbol in symbols(code) if symbol.is_local}
+    assert 'own_entry.0' in inner_names and not any('_ZN' in name for name in inner_names)
 
 
 SIZES = """

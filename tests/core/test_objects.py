@@ -9,11 +9,12 @@ from isa_ros.core.elf import Symbol, symbols, undefined_symbols
 from isa_ros.core.kernel import entry_of, kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import (
-    assembled, bitcode_of, library_of, object_of, object_of_bitcode, own_target, Target, TARGETS)
+    assembled, bitcode_of, library_of, object_of, own_target, Target, TARGETS)
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
 from tests.core.test_bound import count, expected, memory, move, Rows
+from tests.objects import made_object
 
 MACHINES = {'x86-64': 62, 'x86-64-v3': 62, 'aarch64': 183}      # numbers of ELF's header
 
@@ -56,7 +57,7 @@ def loaded(out, name):
 
 @pytest.mark.parametrize('name', TARGETS)
 def test_only_the_entries_are_seen(entries, name):
-    code = object_of(entries, TARGETS[name])
+    code = made_object(entries, TARGETS[name])
     assert code[:6] == b'\x7fELF\x02\x01' and code[18] == MACHINES[name]
     seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
     assert seen == {
@@ -66,13 +67,9 @@ def test_only_the_entries_are_seen(entries, name):
 
 
 @pytest.mark.parametrize('name', ['x86-64', own_target().name])
-@pytest.mark.parametrize('is_stored', [False, True])
-def test_a_library_gives_the_same_bytes(entries, name, is_stored, tmp_path):
-    """Also by bitcode, of which objects of all targets can be made later."""
+def test_a_library_gives_the_same_bytes(entries, name, tmp_path):
     out = tmp_path / 'lib.so'
-    code = (object_of_bitcode(bitcode_of(entries), entries, TARGETS[name]) if is_stored
-            else object_of(entries, TARGETS[name]))
-    library_of([code], out)
+    library_of([made_object(entries, TARGETS[name])], out)
     own, other = numbers(), numbers()
     assert loaded(out, 'isa_call')(own) == Bound(call_all, other).run() == -7
     assert own.numbers.tobytes() == other.numbers.tobytes()
@@ -86,7 +83,7 @@ def test_a_library_gives_the_same_bytes(entries, name, is_stored, tmp_path):
 
 def test_a_library_depends_on_nothing(entries, tmp_path):
     out = tmp_path / 'lib.so'
-    library_of([object_of(entries, own_target())], out)
+    library_of([made_object(entries, own_target())], out)
     dynamic = subprocess.run(['readelf', '-d', out], capture_output=True, text=True, check=True)
     assert 'NEEDED' not in dynamic.stdout and 'TEXTREL' not in dynamic.stdout
     exported = subprocess.run(['nm', '-D', out], capture_output=True, text=True, check=True)
@@ -95,7 +92,7 @@ def test_a_library_depends_on_nothing(entries, tmp_path):
 
 def test_two_objects_in_a_library(entries, tmp_path):
     out = tmp_path / 'lib.so'
-    library_of([object_of({name: entry}, own_target()) for name, entry in entries.items()], out)
+    library_of([made_object({name: entry}, own_target()) for name, entry in entries.items()], out)
     calls = Rows(np.zeros(1, np.int64))
     assert loaded(out, 'isa_count')(calls) == 0 and calls.numbers[0] == 1
 
@@ -113,7 +110,7 @@ def test_symbols_of_an_object():
 def test_a_linker_links_too(entries, tmp_path):
     """That of a cross compiler comes without the compiler."""
     out = tmp_path / 'lib.so'
-    library_of([object_of({'isa_count': entries['isa_count']}, own_target())], out, 'ld')
+    library_of([made_object({'isa_count': entries['isa_count']}, own_target())], out, 'ld')
     given = Rows(np.array([3]))
     assert loaded(out, 'isa_count')(given) == Bound(count, Rows(np.array([3]))).run()
     assert b'lib.so' in out.read_bytes()
@@ -128,7 +125,7 @@ def take_sine(own):
 
 def test_undefined_symbols_are_refused():
     with pytest.raises(ConfigError, match=r'^object of isa_sine: undefined sin, must have none$'):
-        object_of({'isa_sine': entry_of(take_sine, kind_of(numbers()))}, own_target())
+        made_object({'isa_sine': entry_of(take_sine, kind_of(numbers()))}, own_target())
 
 
 @kernel
@@ -144,7 +141,7 @@ def test_another_shape_of_an_array_is_for_all_targets(name, tmp_path):
     """Also once the compiling processor's machine code was made."""
     given = Rows(np.array([1.0, 2.0, 3.0, 4.0]))
     assert (Bound(swap, given).run(), given.numbers.tolist()) == (5, [1.0, 3.0, 2.0, 4.0])
-    code = object_of({'isa_swap': entry_of(swap, kind_of(given))}, TARGETS[name])
+    code = made_object({'isa_swap': entry_of(swap, kind_of(given))}, TARGETS[name])
     assert undefined_symbols(code) == []
     if TARGETS[name].triple == own_target().triple:
         library_of([code], tmp_path / 'lib.so')
@@ -161,16 +158,16 @@ def share_array(own):
 
 
 def test_undefined_symbols_of_bitcode_are_refused():
-    code = bitcode_of({'isa_sine': entry_of(take_sine, kind_of(numbers()))})
+    code = bitcode_of(entry_of(take_sine, kind_of(numbers())))
     with pytest.raises(ConfigError, match=r'^object of a, b: undefined sin, must have none$'):
-        object_of_bitcode(code, ('a', 'b'), own_target())
+        object_of({'a': code, 'b': code}, own_target())
 
 
 @pytest.mark.parametrize('name', ['x86-64', 'aarch64'])
 def test_kernels_that_allocate_are_refused(name):
     """LLVM ends the process where another processor lacks an instruction."""
     with pytest.raises(ConfigError, match=r'^object of isa_half: undefined .+, must have none$'):
-        object_of({'isa_half': entry_of(share_array, kind_of(numbers()))}, TARGETS[name])
+        made_object({'isa_half': entry_of(share_array, kind_of(numbers()))}, TARGETS[name])
 
 
 def test_without_a_compiler(tmp_path):
@@ -182,7 +179,7 @@ def test_without_a_compiler(tmp_path):
 def test_a_linker_that_fails(entries, tmp_path):
     other = next(target for target in TARGETS.values() if target.triple != own_target().triple)
     with pytest.raises(ConfigError, match=r'lib\.so: cc cannot link it: .+$'):
-        library_of([object_of({'isa_count': entries['isa_count']}, other)], tmp_path / 'lib.so')
+        library_of([made_object({'isa_count': entries['isa_count']}, other)], tmp_path / 'lib.so')
 
 
 def test_the_own_target(monkeypatch):

@@ -59,11 +59,12 @@ lowering.declare()
 lowering.lower_only()
 from isa_ros.core.kernel import entry_of
 from isa_ros.core.kinds import kind_of
-from isa_ros.core.objects import object_of, own_target
+from isa_ros.core.objects import own_target
 from tests.core.test_bound import memory
 from tests.core.test_shortcuts import varied
+from tests.objects import made_object
 Path(sys.argv[1]).write_bytes(
-    object_of({'varied': entry_of(varied, kind_of(memory()))}, own_target()))
+    made_object({'varied': entry_of(varied, kind_of(memory()))}, own_target()))
 """
 
 

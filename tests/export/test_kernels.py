@@ -104,7 +104,7 @@ def test_it_is_made_once(directory, monkeypatch):
     assert are_kept([GROUP], OWN) and names_in(directory) == ['bitcode', OWN.name]
     program(monkeypatch, 'raise SystemExit(9)')
     with monkeypatch.context() as patch:
-        patch.setattr(object_making, 'object_of_bitcode', None)
+        patch.setattr(object_making, 'object_of', None)
         assert objects_of([GROUP], OWN) == first
     path = next(directory.glob('*.o'))
     whole = path.read_bytes()
@@ -134,17 +134,46 @@ def test_objects_are_made_at_once_and_each_is_its_own(tmp_path, monkeypatch):
     """Each process waits for the other one."""
     program(monkeypatch, f"""
 import os, pickle, sys, time
-names = list(pickle.load(sys.stdin.buffer).entries)
-open(os.path.join({str(tmp_path)!r}, names[0]), 'w').close()
+from pathlib import Path
+name, = (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries)
+Path({str(tmp_path)!r}, f'asked_{{name}}').touch()
 deadline = time.monotonic() + 60.0
-while len([n for n in os.listdir({str(tmp_path)!r}) if n.startswith('kernel_')]) < 2:
+while len([n for n in os.listdir({str(tmp_path)!r}) if n.startswith('asked_')]) < 2:
     time.sleep(0.01)
     assert time.monotonic() < deadline
-sys.stdout.write('x' * 200_000 + names[0])
+pickle.dump((b'x' * 200_000 + name.encode(),), sys.stdout.buffer)
 """)
-    monkeypatch.setattr(object_making, 'object_of_bitcode', lambda code, names, target: code)
+    monkeypatch.setattr(object_making, 'object_of', joined)
     found = objects_of([GROUP, (Called(take_sine, given()),)], OWN)
-    assert [code[200_000:] for code in found] == [b'kernel_share', b'kernel_take_sine']
+    assert [code.replace(b'x', b'') for code in found] == [
+        b'kernel_share=share;', b'kernel_take_sine=take_sine;']
+    assert min(map(len, found)) > 200_000
+
+
+def joined(codes, target):
+    """Return bitcode by name as an object."""
+    return b''.join(b'%s=%s;' % (name.encode(), code) for name, code in codes.items())
+
+
+def test_only_what_is_not_kept_is_lowered(directory, monkeypatch):
+    """An entry that another object has is not; nor is a program wanted for what all have."""
+    objects_of([GROUP], OWN)
+    program(monkeypatch, """
+import pickle, sys
+name, = (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries)
+pickle.dump((name.encode(),), sys.stdout.buffer)
+""")
+    sine = Called(take_sine, given())
+    with monkeypatch.context() as patch:
+        patch.setattr(object_making, 'object_of', joined)
+        code, = objects_of([(*GROUP, sine)], OWN)
+    assert code.startswith(b'kernel_share=BC') and code.endswith(b';kernel_take_sine=take_sine;')
+    program(monkeypatch, 'raise SystemExit(9)')
+    monkeypatch.setattr(object_making, 'object_of', joined)
+    assert objects_of([(sine,), (sine, *GROUP)], OWN) == (
+        b'kernel_take_sine=take_sine;',
+        b'kernel_take_sine=take_sine;' + code.partition(b'kernel_take')[0])
+    assert names_in(directory) == ['bitcode', 'bitcode', *[OWN.name] * 4]
 
 
 def test_what_an_object_cannot_have_is_refused(directory):
@@ -160,7 +189,7 @@ def test_an_ended_process_is_one_line_and_leaves_nothing(directory, monkeypatch)
 import os, pickle, signal, sys, time
 sys.stdout.write('half')
 sys.stdout.flush()
-if 'kernel_share' in pickle.load(sys.stdin.buffer).entries:
+if 'share' in (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries):
     os.kill(os.getpid(), signal.SIGKILL)
 time.sleep(600.0)
 """)
@@ -199,9 +228,10 @@ def test_what_a_module_prints_is_not_taken_for_bitcode(capsys):
 
 
 def test_what_the_process_warns_of_is_shown(monkeypatch, capsys):
-    program(monkeypatch, 'import sys; print("careful", file=sys.stderr); print("code")')
-    monkeypatch.setattr(object_making, 'object_of_bitcode', lambda code, names, target: code)
-    assert objects_of([GROUP], OWN) == (b'code\n',)
+    program(monkeypatch, 'import pickle, sys; print("careful", file=sys.stderr); '
+                         'pickle.dump((b"code",), sys.stdout.buffer)')
+    monkeypatch.setattr(object_making, 'object_of', lambda codes, target: codes['kernel_share'])
+    assert objects_of([GROUP], OWN) == (b'code',)
     assert capsys.readouterr().err == 'careful\n'
 
 
