@@ -66,7 +66,7 @@ def cylinder_record() -> np.recarray:
     return record
 
 
-@kernel
+@called_kernel
 def slope(y, command, cylinder):
     """
     Return dy/dt of the `STATES`; m v' = f_h - d v - c x  (V7, V10, C1, C2, C3).
