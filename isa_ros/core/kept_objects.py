@@ -1,4 +1,4 @@
-"""Bitcode and objects of entries in the directory of compiled kernels: a machine makes each once."""
+"""Bitcode and objects of entries in the directory of compiled kernels: made once by a machine."""
 
 from collections.abc import Iterable, Mapping
 import hashlib

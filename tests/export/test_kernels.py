@@ -155,27 +155,6 @@ def joined(codes, target):
     return b''.join(b'%s=%s;' % (name.encode(), code) for name, code in codes.items())
 
 
-def test_only_what_is_not_kept_is_lowered(directory, monkeypatch):
-    """An entry that another object has is not; nor is a program wanted for what all have."""
-    objects_of([GROUP], OWN)
-    program(monkeypatch, """
-import pickle, sys
-name, = (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries)
-pickle.dump((name.encode(),), sys.stdout.buffer)
-""")
-    sine = Called(take_sine, given())
-    with monkeypatch.context() as patch:
-        patch.setattr(object_making, 'object_of', joined)
-        code, = objects_of([(*GROUP, sine)], OWN)
-    assert code.startswith(b'kernel_share=BC') and code.endswith(b';kernel_take_sine=take_sine;')
-    program(monkeypatch, 'raise SystemExit(9)')
-    monkeypatch.setattr(object_making, 'object_of', joined)
-    assert objects_of([(sine,), (sine, *GROUP)], OWN) == (
-        b'kernel_take_sine=take_sine;',
-        b'kernel_take_sine=take_sine;' + code.partition(b'kernel_take')[0])
-    assert names_in(directory) == ['bitcode', 'bitcode', *[OWN.name] * 4]
-
-
 def test_what_an_object_cannot_have_is_refused(directory):
     with pytest.raises(ConfigError) as refused:
         objects_of([(Called(take_sine, given()),)], OWN)

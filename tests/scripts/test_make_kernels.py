@@ -12,14 +12,12 @@ import sys
 from types import SimpleNamespace
 import warnings
 
-from isa_ros.core import kept_objects
 from isa_ros.core.bound import run_rounds
 from isa_ros.core.elf import symbols
-from isa_ros.core.kept_objects import bitcode_name
 from isa_ros.core.kernel_library import address_in
 from isa_ros.core.objects import own_target, TARGETS
 import pytest
-from scripts import kernel_objects, kernel_rehearsal, make_kernels
+from scripts import kernel_rehearsal, make_kernels
 from scripts.kernel_objects import Objects
 from scripts.kernel_rehearsal import ALONE, rehearsals, rehearse, WantedKernel
 from scripts.make_kernels import KernelProgress, link, lower_long, main, make, Making, PERIOD_S
@@ -115,49 +113,6 @@ def test_objects_of_an_entry(alone, objects):
         code = objects.path(wanted.symbol, name).read_bytes()
         seen = {symbol.name for symbol in symbols(code) if not symbol.is_local}
         assert {wanted.symbol, f'{wanted.symbol}_result'} <= seen
-
-
-def test_bitcode_is_kept_and_taken(alone, tmp_path, monkeypatch, capsys):
-    """By the next clone, and by exports; in this process it would be another one."""
-    wanted, place = alone['merge'], tmp_path / 'isa_ros' / 'kernels'
-    first, second = (Objects(tmp_path / name, (TARGETS['x86-64'].name,)) for name in 'ab')
-    first.directory.mkdir()
-    second.directory.mkdir()
-    monkeypatch.setenv('NUMBA_CACHE_DIR', str(tmp_path))
-    assert in_lowering(make, wanted, first) == {}
-    assert [path.name for path in place.iterdir()] == [bitcode_name(wanted.entry)]
-    monkeypatch.setattr(kept_objects, 'READ', (place,))
-    monkeypatch.setattr(kept_objects, 'CACHE', None)
-    monkeypatch.setattr(kernel_objects, 'bitcode_of', None)
-    assert make(wanted, second) == {} and capsys.readouterr() == ('', '')
-    names = sorted(path.name for path in first.directory.iterdir())
-    assert names and names == sorted(path.name for path in second.directory.iterdir())
-    for name in names:
-        assert (first.directory / name).read_bytes() == (second.directory / name).read_bytes()
-
-
-def refuse(entries, target):
-    """Make the object of no target but x86-64."""
-    if target.name != 'x86-64':
-        raise kernel_objects.ConfigError('object of merge_0: undefined sin, must have none')
-    return b'code'
-
-
-def test_a_target_that_cannot_have_an_entry_says_why(alone, tmp_path, monkeypatch):
-    monkeypatch.setattr(kernel_objects, 'object_of', refuse)
-    monkeypatch.setattr(kernel_objects, 'own_target', lambda: TARGETS['x86-64'])
-    monkeypatch.setattr(kept_objects, 'READ', ())
-    monkeypatch.setattr(kept_objects, 'CACHE', tmp_path / 'kept')
-    objects = Objects(tmp_path, ('x86-64-v3',))
-    assert make(alone['merge'], objects) == {'x86-64-v3': 'undefined sin, must have none'}
-    assert [path.read_bytes() for path in tmp_path.iterdir()] == [b'code']
-
-
-def test_what_cannot_be_called_is_named(alone, tmp_path, monkeypatch):
-    monkeypatch.setattr(kernel_objects, 'object_of', refuse)
-    monkeypatch.setattr(kernel_objects, 'own_target', lambda: TARGETS['aarch64'])
-    with pytest.raises(kernel_objects.ConfigError, match='^kernel merge: undefined sin, must'):
-        Objects(tmp_path, ()).address(alone['merge'].entry)
 
 
 def test_progress_says_how_many_and_the_time_left():
