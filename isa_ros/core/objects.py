@@ -120,7 +120,6 @@ def object_of(codes: Mapping[str, bytes], target: Target) -> bytes:
     whole = _retargeted(llvm.parse_assembly(RUNTIME), target, machine)
     for name, code in codes.items():
         whole.link_in(_retargeted(_named(code, name), target, machine))
-    _remove_unused(whole, machine)
     undefined = _foreign_instructions(whole, target)
     made: bytes = b'' if undefined else machine.emit_object(whole)
     undefined = undefined or undefined_symbols(made)

@@ -68,6 +68,24 @@ def test_only_what_is_not_kept_is_lowered(directory, monkeypatch):
     assert kinds_in(directory) == {'.bc': 2, '.o': 4}
 
 
+def test_groups_are_lowered_at_once_and_each_is_its_own(tmp_path, monkeypatch):
+    """Each process waits for the other one, and has more to say than a pipe holds."""
+    monkeypatch.setattr(bitcode, '_PROGRAM', f"""
+import pickle, sys, time
+from pathlib import Path
+name, = (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries)
+folder = Path({str(tmp_path)!r})
+(folder / f'asked_{{name}}').touch()
+deadline = time.monotonic() + 60.0
+while len(list(folder.glob('asked_*'))) < 2:
+    time.sleep(0.01)
+    assert time.monotonic() < deadline
+pickle.dump((b'x' * 200_000 + name.encode(),), sys.stdout.buffer)
+""")
+    found = made(('move',), ('count',))
+    assert found == [{name: b'x' * 200_000 + name.encode()} for name in ('move', 'count')]
+
+
 def test_what_is_damaged_is_lowered_again(directory, monkeypatch):
     made(('move', 'count'))
     first, _ = sorted(directory.glob('*.bc'))

@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+import re
 import subprocess
 
 from isa_ros.core.bound import Bound, table_of
@@ -9,11 +10,13 @@ from isa_ros.core.elf import Symbol, symbols, undefined_symbols
 from isa_ros.core.kernel import entry_of, kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.objects import (
-    assembled, bitcode_of, library_of, object_of, own_target, Target, TARGETS)
+    _kernel_name, assembled, bitcode_of, ENTRY, library_of, object_of, own_target, Target, TARGETS)
 from isa_ros.errors import ConfigError
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 from tests.core.test_bound import count, expected, memory, move, Rows
+from tests.core.test_kernel_library import pick
 from tests.objects import made_object
 
 MACHINES = {'x86-64': 62, 'x86-64-v3': 62, 'aarch64': 183}      # numbers of ELF's header
@@ -64,6 +67,28 @@ def test_only_the_entries_are_seen(entries, name):
         *entries, 'floor', 'ceil', 'rint', 'fmod', 'numba_frexp', 'memset', 'memcpy', 'memmove',
         'numba_attempt_nocopy_reshape', 'NRT_MemInfo_call_dtor', 'isa_counted'}
     assert undefined_symbols(code) == []
+
+
+def test_what_is_within_has_the_name_of_its_kernel_and_its_place():
+    """The names of numba have numbers of what else the process has compiled."""
+    code = made_object({'isa_pick': entry_of(pick, kind_of(Rows(np.array([1]))))}, own_target())
+    names = [symbol.name for symbol in symbols(code) if symbol.is_local]
+    own = [name for name in names if re.fullmatch(r'[a-z_]+\.\d+', name)]
+    assert {name.partition('.')[0] for name in own} == {'own_entry', 'constant'}
+    assert not any('_ZN' in name or '.const' in name for name in names)
+    mangled = '_ZN7isa_ros5plant5spool10stop_spoolB4v120B64c8tJTIeFIjxB2IKSgIE6RecordILi1EEd'
+    assert _kernel_name(mangled) == 'isa_ros.plant.spool.stop_spool'
+    assert _kernel_name('own_entry') == 'own_entry'
+
+
+def test_instructions_of_another_processor_are_refused():
+    """LLVM would end the process."""
+    code = llvm.parse_assembly(
+        f'declare i64 @llvm.x86.rdtsc()\ndefine i64 @{ENTRY}(ptr %table) {{\n'
+        '%time = call i64 @llvm.x86.rdtsc()\nret i64 %time }').as_bitcode()
+    assert undefined_symbols(object_of({'isa_time': code}, TARGETS['x86-64'])) == []
+    with pytest.raises(ConfigError, match='object of isa_time: undefined llvm.x86.rdtsc, must'):
+        object_of({'isa_time': code}, TARGETS['aarch64'])
 
 
 @pytest.mark.parametrize('name', ['x86-64', own_target().name])

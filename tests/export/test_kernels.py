@@ -40,6 +40,13 @@ def share(own):
 
 
 @kernel
+def halve(own):
+    """Halve the first number; return 7."""
+    own.numbers[0] /= 2.0
+    return 7
+
+
+@kernel
 def take_sine(own):
     """Call a function that no object has."""
     own.numbers[0] = math.sin(own.numbers[0])
@@ -130,29 +137,13 @@ def test_objects_of_all_targets_are_made_of_one_bitcode(directory, monkeypatch):
     assert not are_kept([GROUP, (*GROUP, Called(take_sine, given()))], OWN)
 
 
-def test_objects_are_made_at_once_and_each_is_its_own(tmp_path, monkeypatch):
-    """Each process waits for the other one."""
-    program(monkeypatch, f"""
-import os, pickle, sys, time
-from pathlib import Path
-name, = (own.kernel.__name__ for own in pickle.load(sys.stdin.buffer).entries)
-Path({str(tmp_path)!r}, f'asked_{{name}}').touch()
-deadline = time.monotonic() + 60.0
-while len([n for n in os.listdir({str(tmp_path)!r}) if n.startswith('asked_')]) < 2:
-    time.sleep(0.01)
-    assert time.monotonic() < deadline
-pickle.dump((b'x' * 200_000 + name.encode(),), sys.stdout.buffer)
-""")
-    monkeypatch.setattr(object_making, 'object_of', joined)
-    found = objects_of([GROUP, (Called(take_sine, given()),)], OWN)
-    assert [code.replace(b'x', b'') for code in found] == [
-        b'kernel_share=share;', b'kernel_take_sine=take_sine;']
-    assert min(map(len, found)) > 200_000
-
-
-def joined(codes, target):
-    """Return bitcode by name as an object."""
-    return b''.join(b'%s=%s;' % (name.encode(), code) for name, code in codes.items())
+def test_each_kernel_of_an_object_is_its_own(tmp_path, compiled):
+    code, = objects_of([(*GROUP, Called(halve, given()))], OWN)
+    library_of([code], tmp_path / 'lib.so')
+    library, own = ctypes.CDLL(str(tmp_path / 'lib.so')), given()
+    table = ctypes.c_void_p(table_of(own).ctypes.data)
+    assert (library.kernel_share(table), library.kernel_halve(table)) == (5, 7)
+    assert own.numbers[0] == 1.0 and own.numbers[1] == math.sqrt(2.0) / 3.0 and not compiled
 
 
 def test_what_an_object_cannot_have_is_refused(directory):

@@ -6,6 +6,7 @@ from multiprocessing import get_context
 from isa_ros.core import kept_objects
 from isa_ros.core.kept_objects import bitcode_name
 from isa_ros.core.kernel import entry_of
+from isa_ros.core.kernel_cache import say_not_kept
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.lowering import lower_long
 from isa_ros.core.objects import TARGETS
@@ -31,6 +32,7 @@ def place(tmp_path, monkeypatch):
     monkeypatch.setattr(kept_objects, 'CACHE', own)
     monkeypatch.setattr(kept_objects, 'READ', (own,))
     monkeypatch.setattr(kernel_objects, 'own_target', lambda: NEW)
+    say_not_kept.cache_clear()
     return own
 
 
