@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from isa_ros.core.kept_objects import bitcode_name, keep, kept
 from isa_ros.core.kernel import KernelEntry
+from isa_ros.core.kernel_key import is_unchanged
 from isa_ros.core.kernel_library import address_in, Call, call_in
 from isa_ros.core.objects import bitcode_of, library_of, object_of, own_target, TARGETS
 from isa_ros.errors import ConfigError
@@ -45,8 +46,8 @@ class Objects(NamedTuple):
                        object_of({entry.symbol: code}, TARGETS[name]))
             except ConfigError as error:
                 refused[name] = str(error).rpartition(': ')[2]
-        if found is None and not refused:
-            keep(kept_name, code)
+        if found is None and not refused and is_unchanged(entry.kernel):
+            keep(kept_name, code, _say_nothing)
         return refused
 
     def address(self, entry: KernelEntry) -> int:
@@ -77,6 +78,10 @@ class Objects(NamedTuple):
                 library_of([self.path(entry.symbol, own_target().name).read_bytes()], library)
                 library.replace(path)
         return ctypes.CDLL(str(path))
+
+
+def _say_nothing(reason: str) -> None:
+    """Say nothing where bitcode cannot be kept: the objects are made all the same."""
 
 
 def _write(path: Path, code: bytes) -> None:

@@ -54,7 +54,7 @@ def export(options: argparse.Namespace) -> bool:
     from isa_ros.core.objects import own_target
     from isa_ros.export.chosen import choose
     from isa_ros.export.directory import refuse_foreign, write
-    from isa_ros.export.kernels import are_kept
+    from isa_ros.export.kernels import are_lowered
     from isa_ros.export.library import compiler_of, processor_of, target_of
     from isa_ros.text.progress import underway
     target = own_target() if options.target is None else target_of(options.target)
@@ -67,7 +67,7 @@ def export(options: argparse.Namespace) -> bool:
                    'the values of your data sheets')
     written = (_units if options.fmu else _library)(chosen, target, options)
     refuse_foreign(options.out, written.names)
-    if not are_kept(written.kernels, target):
+    if not are_lowered(written.kernels, target):
         print_line(f'machine code for {target.name} takes 10 to 30 s, once after an installation '
                    'or an edit')
     with underway(sys.stderr, 'machine code'):

@@ -2,7 +2,7 @@
 Files of a cache of machine code: each is whole or not there.
 
 No lock is needed: a file is written aside and then renamed, and two processes that make the same
-file write the same. One that nobody has used for long is swept.
+file write the same but for names within. One that nobody has used for long is swept.
 """
 
 import contextlib

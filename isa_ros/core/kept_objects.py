@@ -1,6 +1,6 @@
 """Bitcode and objects of entries in the directory of compiled kernels: made once by a machine."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 import hashlib
 
 from isa_ros.core.kept_files import read_kept, write_kept
@@ -42,12 +42,13 @@ def kept(name: str | None) -> bytes | None:
     return next((bytes(content) for content in found if content is not None), None)
 
 
-def keep(name: str | None, content: bytes) -> None:
-    """Keep what a file has, or print one line why it cannot be kept."""
+def keep(name: str | None, content: bytes,
+         say: Callable[[str], object] = say_not_kept) -> None:
+    """Keep what a file has, or ``say`` why it cannot be kept: in one line."""
     if CACHE is None or name is None:
-        say_not_kept('no directory is writable' if name else 'as a source is missing')
+        say('no directory is writable' if name else 'as a source is missing')
         return
     try:
         write_kept(CACHE / name, content)
     except OSError as error:
-        say_not_kept(error.strerror or str(error))
+        say(error.strerror or str(error))

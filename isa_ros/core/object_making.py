@@ -38,31 +38,42 @@ def objects_of_entries(
         return tuple(own.code(tell) for own in begun)
 
 
+def needs_no_process(
+        groups: Iterable[Mapping[str, KernelEntry]], target: Target) -> bool:
+    """Return whether all objects are kept, or the bitcode that they are made of is."""
+    return all(kept(object_name(own, target)) or len(_kept_bitcodes(own)) == len(own)
+               for own in groups)
+
+
+def _kept_bitcodes(entries: Mapping[str, KernelEntry]) -> dict[str, bytes]:
+    """Return the bitcode of the entries of which it is kept."""
+    found = ((name, kept(bitcode_name(own))) for name, own in entries.items())
+    return {name: code for name, code in found if code}
+
+
 class _Object:
     """The object of a group of entries: kept, or made of bitcode that is kept or of a process."""
 
     def __init__(
             self, entries: Mapping[str, KernelEntry], target: Target, stack: ExitStack) -> None:
         """Start a process, if one is needed, which ends with the context at the latest."""
-        self._target, self._name = target, object_name(entries, target)
+        self._entries, self._target = entries, target
+        self._name = object_name(entries, target)
         self._code = kept(self._name)
-        self._bitcodes: dict[str, bytes | None] = {}
-        self._lowered: dict[str, KernelEntry] = {}
-        if self._code is None:
-            self._bitcodes = {name: kept(bitcode_name(own)) for name, own in entries.items()}
-            self._lowered = {name: entries[name]
-                             for name, code in self._bitcodes.items() if code is None}
-        self._lowering = stack.enter_context(
-            lowering(tuple(self._lowered.values()))) if self._lowered else None
+        self._bitcodes = _kept_bitcodes(entries) if self._code is None else {}
+        self._missing = () if self._code else tuple(
+            own for name, own in entries.items() if name not in self._bitcodes)
+        self._lowering = stack.enter_context(lowering(self._missing)) if self._missing else None
 
     def code(self, tell: Callable[[str], object]) -> bytes:
         """Return it, made now if need be; raises as `objects_of_entries`."""
         if self._code is None:
             made = () if self._lowering is None else self._lowering.bitcodes(tell)
-            self._bitcodes.update(zip(self._lowered, made))
+            lowered = dict(zip(self._missing, made, strict=True))
             self._code = object_of(
-                {name: code for name, code in self._bitcodes.items() if code}, self._target)
-            for entry, code in zip(self._lowered.values(), made):
+                {name: self._bitcodes.get(name) or lowered[own]
+                 for name, own in self._entries.items()}, self._target)
+            for entry, code in lowered.items():
                 keep(bitcode_name(entry), code)
             keep(self._name, self._code)
         return self._code

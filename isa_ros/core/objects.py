@@ -74,14 +74,16 @@ def bitcode_of(entry: KernelEntry) -> bytes:
     machine = _machine(target)
     module = _retargeted(_module_of(entry), target, machine)
     _remove_unused(module, machine)
-    _name_inner(module)
+    function = entry.kernel.py_func
+    module.get_function(_OWN).name = f'{function.__module__}.{function.__qualname__}'
+    _number(module)
     code: bytes = module.as_bitcode()
     return code
 
 
-def _name_inner(module: Any) -> None:
+def _number(module: Any) -> None:
     """
-    Name what is not seen outside by its kernel, and its place in the module.
+    Name functions that are not seen outside by their kernels, and all by the place in the module.
 
     The names of numba have numbers of what the process has compiled before.
     """

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable
 
-from isa_ros.core.kept_objects import kept, object_name
 from isa_ros.core.kernel import entry_of, KernelEntry
 from isa_ros.core.kinds import kind_of
-from isa_ros.core.object_making import objects_of_entries
+from isa_ros.core.object_making import needs_no_process, objects_of_entries
 from isa_ros.core.objects import Target
 from isa_ros.export.exported import Called
 
@@ -15,9 +14,9 @@ def entries_of(kernels: Iterable[Called]) -> dict[str, KernelEntry]:
     return {one.name: entry_of(one.function, kind_of(one.memory)) for one in kernels}
 
 
-def are_kept(groups: Iterable[Iterable[Called]], target: Target) -> bool:
-    """Return whether the objects of all groups of kernels are kept for a target."""
-    return all(kept(object_name(entries_of(own), target)) is not None for own in groups)
+def are_lowered(groups: Iterable[Iterable[Called]], target: Target) -> bool:
+    """Return whether all groups of kernels take no long time: what is long is kept."""
+    return needs_no_process(map(entries_of, groups), target)
 
 
 def objects_of(groups: Iterable[Iterable[Called]], target: Target) -> tuple[bytes, ...]:

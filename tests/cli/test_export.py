@@ -110,7 +110,7 @@ def test_foreign_files_stay(tmp_path, capsys):
 def test_what_is_assumed_is_told_before_anything_is_compiled(tmp_path, capsys, monkeypatch):
     """Once, with its values; and machine code is announced, if it is not kept."""
     done, said = [], []
-    monkeypatch.setattr(kernels, 'are_kept', lambda groups, target: done.append(
+    monkeypatch.setattr(kernels, 'are_lowered', lambda groups, target: done.append(
         [[own.function.__name__ for own in group] for group in groups]) or len(done) > 1)
     monkeypatch.setattr(library, 'library', lambda *given: said.append(
         capsys.readouterr().err.splitlines()) or {})

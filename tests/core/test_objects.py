@@ -73,12 +73,12 @@ def test_what_is_within_has_the_name_of_its_kernel_and_its_place():
     """The names of numba have numbers of what else the process has compiled."""
     code = made_object({'isa_pick': entry_of(pick, kind_of(Rows(np.array([1]))))}, own_target())
     names = [symbol.name for symbol in symbols(code) if symbol.is_local]
-    own = [name for name in names if re.fullmatch(r'[a-z_]+\.\d+', name)]
-    assert {name.partition('.')[0] for name in own} == {'own_entry', 'constant'}
+    own = {name.rpartition('.')[0] for name in names if re.fullmatch(r'[a-z_.]+\.\d+', name)}
+    assert own == {f'{pick.__module__}.pick', 'constant'}
     assert not any('_ZN' in name or '.const' in name for name in names)
     mangled = '_ZN7isa_ros5plant5spool10stop_spoolB4v120B64c8tJTIeFIjxB2IKSgIE6RecordILi1EEd'
     assert _kernel_name(mangled) == 'isa_ros.plant.spool.stop_spool'
-    assert _kernel_name('own_entry') == 'own_entry'
+    assert _kernel_name('NRT_incref') == 'NRT_incref'
 
 
 def test_instructions_of_another_processor_are_refused():

@@ -17,7 +17,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.objects import library_of, own_target, TARGETS
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.export.exported import Called
-from isa_ros.export.kernels import are_kept, objects_of
+from isa_ros.export.kernels import are_lowered, objects_of
 import numpy as np
 import pytest
 
@@ -106,9 +106,9 @@ def names_in(directory):
 
 def test_it_is_made_once(directory, monkeypatch):
     """Without a process and without LLVM; damaged, it is made again."""
-    assert not are_kept([GROUP], OWN)
+    assert not are_lowered([GROUP], OWN)
     first = objects_of([GROUP], OWN)
-    assert are_kept([GROUP], OWN) and names_in(directory) == ['bitcode', OWN.name]
+    assert are_lowered([GROUP], OWN) and names_in(directory) == ['bitcode', OWN.name]
     program(monkeypatch, 'raise SystemExit(9)')
     with monkeypatch.context() as patch:
         patch.setattr(object_making, 'object_of', None)
@@ -116,11 +116,12 @@ def test_it_is_made_once(directory, monkeypatch):
     path = next(directory.glob('*.o'))
     whole = path.read_bytes()
     path.write_bytes(whole[:-1])
-    assert not are_kept([GROUP], OWN)
+    assert are_lowered([GROUP], OWN)
     assert objects_of([GROUP], OWN) == first and path.read_bytes() == whole
     next(directory.glob('*.bc')).write_bytes(b'damaged')
-    assert objects_of([GROUP], OWN) == first
+    assert objects_of([GROUP], OWN) == first and are_lowered([GROUP], OWN)
     path.unlink()
+    assert not are_lowered([GROUP], OWN)
     with pytest.raises(RunError, match='exit code 9'):
         objects_of([GROUP], OWN)
 
@@ -129,12 +130,12 @@ def test_objects_of_all_targets_are_made_of_one_bitcode(directory, monkeypatch):
     objects_of([GROUP], OWN)
     program(monkeypatch, 'raise SystemExit(9)')
     for target in TARGETS.values():
-        assert are_kept([GROUP], target) == (target == OWN)
+        assert are_lowered([GROUP], target)
         code, = objects_of([GROUP], target)
         assert code[18] == (183 if target.name == 'aarch64' else 62)
         assert all(symbol.is_defined for symbol in symbols(code))
     assert names_in(directory) == sorted(['bitcode', *TARGETS])
-    assert not are_kept([GROUP, (*GROUP, Called(take_sine, given()))], OWN)
+    assert not are_lowered([GROUP, (*GROUP, Called(take_sine, given()))], OWN)
 
 
 def test_each_kernel_of_an_object_is_its_own(tmp_path, compiled):

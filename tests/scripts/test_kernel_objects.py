@@ -5,18 +5,27 @@ from multiprocessing import get_context
 
 from isa_ros.core import kept_objects
 from isa_ros.core.kept_objects import bitcode_name
-from isa_ros.core.kernel import entry_of
+from isa_ros.core.kernel import entry_of, kernel
 from isa_ros.core.kernel_cache import say_not_kept
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.lowering import lower_long
 from isa_ros.core.objects import TARGETS
 from isa_ros.errors import ConfigError
+import numpy as np
 import pytest
 from scripts import kernel_objects
 from scripts.kernel_objects import Objects
-from tests.core.test_bound import memory, move
+from tests.core.test_bound import memory, move, Rows
 
+FACTOR = 3.0
 OLD, NEW = TARGETS['x86-64'], TARGETS['x86-64-v3']
+
+
+@kernel
+def scale(own):
+    """Multiply a number by that of the module."""
+    own.numbers[0] *= FACTOR
+    return 0
 
 
 def entry():
@@ -67,6 +76,21 @@ def test_what_is_made_is_not_made_again(tmp_path, place, monkeypatch):
         made.append((*codes, target)), object_of(codes, target))[1])
     assert objects.make(entry()) == {} == objects.make(entry())
     assert made == [(symbol, OLD)]
+
+
+def test_bitcode_of_a_value_that_has_changed_is_not_kept(tmp_path, place, monkeypatch):
+    """Its name would be that of the value at first sight."""
+    own = entry_of(scale, kind_of(Rows(np.ones(1))))
+    assert bitcode_name(own) is not None
+    monkeypatch.setattr(f'{__name__}.FACTOR', 7.0)
+    assert objects_in(tmp_path / 'a').make(own) == {} and not place.exists()
+
+
+def test_where_nothing_can_be_kept_objects_are_made_without_a_word(tmp_path, place, capsys):
+    place.parent.write_text('a file')
+    objects = objects_in(tmp_path / 'a')
+    assert objects.make(entry()) == {} and len(list(objects.directory.iterdir())) == 1
+    assert capsys.readouterr() == ('', '')
 
 
 def refuse(codes, target):
