@@ -11,7 +11,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from isa_ros.cli.running import print_line, record, simulating
+from isa_ros.cli.running import PAGE, print_line, record, simulating
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.run.option import namespace
@@ -35,7 +35,7 @@ def demo(options: Namespace) -> bool:
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone)).out
     found = read_recorded(bag)
-    page, *figures = write_report(found, out / 'report.html')
+    page, *figures = write_report(found, out / PAGE)
     print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(found.signals)}\n')
     print(f'{text_of(found.accounts)}\n\n{next_steps_text(bag)}')
     return True
@@ -119,7 +119,7 @@ def report(options: Namespace) -> bool:
     from isa_ros.analysis.report.report import another_version, recorded as read_recorded
     from isa_ros.analysis.report.report import write_report
     bag: Path = options.bag
-    page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
+    page = options.out or (bag if bag.is_dir() else bag.parent) / PAGE
     with underway(sys.stderr, one_line(f'reading {bag}, drawing its report')):
         found = read_recorded(bag)
         written = [*write_report(found, page)]

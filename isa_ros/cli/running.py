@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from isa_ros.run.session import Report, Session
 
 Command = Callable[[Namespace], bool]
+PAGE = 'report.html'
+"""Of a report beside its bag."""
 
 
 def simulating(command: Command) -> Command:
@@ -51,6 +53,9 @@ def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None
         with _even_without_terminal():
             for bag in session.bags:
                 print(bag)
+                if (bag / PAGE).is_file():
+                    print_line(f'{bag / PAGE}: is of the bag that was replaced; isa report {bag} '
+                               'writes it anew')
             for line in session.lines:
                 print_line(line)
             if session.pace.shortfall:

@@ -49,7 +49,9 @@ def command_arguments(parser: argparse.ArgumentParser) -> None:
         what.add_argument(f'--{name.replace("_", "-")}', action='store_const', const=name,
                           dest='request', help='a request to its device, instead of a setpoint')
     _timeout(parser)
-    parser.epilog = 'Exits with 1 if the device declines a request, 3 after the timeout.'
+    parser.epilog = (
+        'POSITION stands before the options. Exits with 1 if the device declines a request or '
+        'follows no setpoint, 3 after the timeout.')
 
 
 def _timeout(parser: argparse.ArgumentParser) -> None:
@@ -91,8 +93,7 @@ def command(options: Namespace) -> bool:
             'alone are set by isa set NAME reu.position.stiffness=VALUE')
     if options.request:
         return request(options.actuator, options.request, options.timeout, _print)
-    send(options.actuator, wanted, options.timeout, _print)
-    return True
+    return send(options.actuator, wanted, options.timeout, _print)
 
 
 def _print(line: str) -> None:

@@ -24,7 +24,7 @@ SCENARIO: Mapping[str, KeyRow] = {
     'name': KeyRow('name', REQUIRED, 'the name of the scenario, of its bag and report'),
     'figure': KeyRow('name', 'none', 'figure of the paper that `isa report` begins with'),
     'duration_s': KeyRow('number, s', REQUIRED, 'of the run, whole ticks'),
-    'beyond_range': KeyRow('accept', 'limited', (
+    'beyond_range': KeyRow('accept', 'of the actuators', (
         'takes setpoints beyond the range of their actuators as they are')),
     'leg': KeyRow('section', 'of the run file', 'start of the body `leg`, as in the run file'),
     'bodies': KeyRow('sections by name', 'of the run file', 'starts of other bodies'),

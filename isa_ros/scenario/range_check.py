@@ -111,4 +111,5 @@ def _text(what: str, found: Beyond, own: SetpointRange) -> str:
     if own.limits:
         return f'{what}, {found.limitation}'
     raise ConfigError(
-        f'{what}, {found.refusal}; beyond_range: {ACCEPT} of the scenario takes it as it is')
+        f'{what}, {found.refusal}; beyond_range: {ACCEPT} of the scenario takes it as it is, '
+        'limit of the actuator limits it')

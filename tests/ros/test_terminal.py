@@ -47,7 +47,7 @@ def test_a_command_moves_the_actuator(ram: str, capsys: pytest.CaptureFixture[st
     text = printed(capsys, 'command', ram, '0.03', '--stiffness', '2e5')
     assert re.fullmatch(
         r'/lab/ram: impedance: position 0.03, velocity 0, effort 0, stiffness 200000, '
-        r'damping 4000, from t = \d+\.\d{3} s on\n', text)
+        r'damping 4000, from t = \d+\.\d{6} s on\n', text)
 
     def has_arrived() -> bool:
         message = yaml.safe_load(
@@ -76,6 +76,8 @@ def test_a_request_that_the_device_declines_is_1(
         ram: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert 'clear_fault needs fault' in printed(capsys, 'command', ram, '--clear-fault', code=1)
     assert ': disabled from t = ' in printed(capsys, 'command', ram, '--disable')
+    assert printed(capsys, 'command', ram, '0.03', code=1).endswith(
+        ' s on, not followed: the device is not enabled\n')
     assert ': enabled from t = ' in printed(capsys, 'command', ram, '--enable')
 
 

@@ -18,7 +18,7 @@ QUARTER = f'  - {{t_s: 0.5, position: 0.05, {SINE}}}\n'
 BEYOND = [
     ('  - {t_s: 0, position: 50.0}\n',
      'scenario.yaml: tracks.knee[0].position = 50 m, must be 0 to 0.1 m, the stroke; '
-     'beyond_range: accept of the scenario takes it as it is'),
+     'beyond_range: accept of the scenario takes it as it is, limit of the actuator limits it'),
     ('  - {t_s: 0, position: 0.05}\n  - {t_s: 1, position: 0.05, effort: 7501}\n',
      'tracks.knee[1].effort = 7501 N, must be -5174 to 7500 N, the rated force; '),
     ('  - {t_s: 0, position: 0.05, stiffness: 1.0e+8}\n',

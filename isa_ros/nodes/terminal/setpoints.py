@@ -75,9 +75,11 @@ def request(actuator: str, what: str, timeout_s: float, print_line: Callable[[st
 
 
 def command(actuator: str, wanted: GivenSetpoint, timeout_s: float,
-            print_line: Callable[[str], None]) -> None:
+            print_line: Callable[[str], None]) -> bool:
     """
-    Send a setpoint and print what took effect, from when on.
+    Send a setpoint, print what took effect from when on, and return whether it is followed.
+
+    A device that is not enabled follows none; once it is, it holds the position that it then has.
 
     Raises
     ------
@@ -92,7 +94,10 @@ def command(actuator: str, wanted: GivenSetpoint, timeout_s: float,
         taken = _sent(visitor, path, wanted)
     stamp = taken.header.stamp
     t = stamp.sec + stamp.nanosec / NS_PER_SECOND
-    print_line(f'{path}: {_shown(taken)}, from t = {t:.3f} s on')
+    is_followed = _entries(taken).get('enabled', 1.0) != 0.0
+    print_line(f'{path}: {_shown(taken)}, from t = {t:.6f} s on'
+               + ('' if is_followed else ', not followed: the device is not enabled'))
+    return is_followed
 
 
 def actuators(visitor: Visitor) -> list[str]:

@@ -31,6 +31,9 @@ def rejected(by: str) -> Log:
     return Log(name=by, msg=f'setpoint rejected: by {by}')
 
 
+KEPT = applied(0.011, HAS_SETPOINT, 1)
+
+
 class Visiting:
     """A visitor and its node; one kept setpoint is there, and each wait ends at once."""
 
@@ -45,7 +48,7 @@ class Visiting:
             self, kind: type, topic: str, callback: Callable[[Any], None], _: object) -> None:
         self.callbacks[kind] = callback
         if kind is JointState:
-            callback(applied(0.011, HAS_SETPOINT, 1))
+            callback(KEPT)
 
     def create_publisher(self, *given: object) -> 'Visiting':
         return self
@@ -62,7 +65,8 @@ class Visiting:
         return bool(condition())
 
 
-def commanded(monkeypatch: pytest.MonkeyPatch, *answers: Any) -> list[str]:
+def commanded(
+        monkeypatch: pytest.MonkeyPatch, *answers: Any, is_followed: bool = True) -> list[str]:
     """Return what a command prints that is answered so."""
     visitor = Visiting(answers)
 
@@ -71,7 +75,7 @@ def commanded(monkeypatch: pytest.MonkeyPatch, *answers: Any) -> list[str]:
         yield visitor
     monkeypatch.setattr(setpoints, 'visiting', visiting)
     lines: list[str] = []
-    command('lab/ram', WANTED, 3.0, lines.append)
+    assert command('lab/ram', WANTED, 3.0, lines.append) is is_followed
     assert [(list(own.name), list(own.position)) for own in visitor.sent] == [(['ram'], [0.03])]
     return lines
 
@@ -81,7 +85,20 @@ def test_the_first_setpoint_after_it_is_shown_with_its_time(monkeypatch):
     lines = commanded(monkeypatch, applied(0.02, HAS_MODE, 2), applied(0.03, HAS_SETPOINT, 3),
                       applied(0.04, HAS_SETPOINT, 4))
     assert lines == ['/lab/ram: impedance: position 0.03, velocity 0.5, effort 7, '
-                     'stiffness 200000, damping 4000, from t = 3.250 s on']
+                     'stiffness 200000, damping 4000, from t = 3.250000 s on']
+
+
+@pytest.mark.parametrize('is_enabled', [True, False])
+def test_a_device_that_is_not_enabled_does_not_follow(monkeypatch, is_enabled):
+    """It was not at the kept setpoint, or is not at the new one."""
+    kept, taken = applied(0.011, HAS_SETPOINT, 2), applied(0.03, HAS_SETPOINT, 3)
+    for message, number in ((kept, not is_enabled), (taken, is_enabled)):
+        message.name = [*message.name, 'ram/enabled']
+        message.position = [*message.position, float(number)]
+    monkeypatch.setattr(f'{__name__}.KEPT', kept)
+    line, = commanded(monkeypatch, taken, is_followed=is_enabled)
+    end = ' s on' if is_enabled else ' s on, not followed: the device is not enabled'
+    assert line.endswith(f'from t = 3.250000{end}')
 
 
 def test_a_rejection_counts_for_its_own_actuator(monkeypatch):
