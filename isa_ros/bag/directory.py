@@ -44,9 +44,9 @@ def files_to_replace(directory: Path, overwrite: bool) -> list[Path]:
     Raises
     ------
     BagError
-        There is a bag and ``overwrite`` is not set, or what is there is never replaced: it is
-        not a bag of this package, or has MCAP files that do not belong to it. Or the name is too
-        long for the files, which begin with it.
+        There is a directory and ``overwrite`` is not set, or what is there is never replaced: it
+        is not a bag of this package, or has MCAP files that do not belong to it. Or the name is
+        too long for the files, which begin with it.
 
     """
     length = len(os.fsencode(directory.name))
@@ -56,8 +56,9 @@ def files_to_replace(directory: Path, overwrite: bool) -> list[Path]:
             f'at most {_MOST_BYTES}; the files in it are named NAME_0{_MCAP}')
     if not directory.exists():
         return []
-    is_empty = directory.is_dir() and not any(directory.iterdir())
-    files = [] if is_empty else _files_of_bag(directory)
+    if not directory.is_dir():
+        raise BagError(f'{directory}: is a file, must be the name of a directory')
+    files = _files_of_bag(directory) if any(directory.iterdir()) else []
     if not overwrite:
         raise _exists(directory)
     return files
@@ -88,6 +89,6 @@ def _files_of_bag(directory: Path) -> list[Path]:
 
 
 def _exists(directory: Path) -> BagError:
+    what = 'replaces the bag in it' if any(directory.iterdir()) else 'takes it, as it is empty'
     return BagError(
-        f'{directory} already exists; --overwrite, in Python overwrite=True, replaces the bag '
-        'in it')
+        f'{directory} already exists; --overwrite, in Python overwrite=True, {what}')

@@ -42,6 +42,22 @@ def test_an_existing_directory_is_refused_and_left_alone(tmp_path: Path) -> None
     assert path.read_bytes() == before
 
 
+def test_an_empty_directory_has_no_bag_to_replace(tmp_path: Path) -> None:
+    with pytest.raises(BagError, match='already exists; .*=True, takes it, as it is empty$'):
+        BagWriter(tmp_path, TOPICS, PROVENANCE)
+    assert not list(tmp_path.iterdir())
+    record(tmp_path, 3, overwrite=True)
+    assert Bag(tmp_path).end_ns == 2 * STEP_NS
+
+
+def test_a_file_is_no_directory(tmp_path: Path) -> None:
+    (tmp_path / 'rig').write_text('mine')
+    for overwrite in (False, True):
+        with pytest.raises(BagError, match='rig: is a file, must be the name of a directory$'):
+            BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE, overwrite=overwrite)
+    assert (tmp_path / 'rig').read_text() == 'mine'
+
+
 def test_overwriting_removes_the_bag_and_nothing_else(tmp_path: Path) -> None:
     directory = tmp_path / 'rig'
     record(directory, 1234, storage=SPLIT)

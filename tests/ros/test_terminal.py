@@ -91,7 +91,8 @@ def test_parameters_are_set_at_once_and_shown(
 
 
 @pytest.mark.parametrize('change, expected', [
-    ('reu.force.kp=-3', 'isa: /lab/ram: Parameter reu.force.kp out of range Min: 0.0'),
+    ('reu.force.kp=-3', 'isa: /lab/ram: reu.force.kp = -3, must be 0 to 3.64544e-05: prop'),
+    ('reu.force.kp=abc', 'isa: /lab/ram: reu.force.kp = abc, must be a number: '),
     ('reu.force.kpp=3', 'parameter reu.force.kpp is unknown; did you mean reu.force.kp'),
     ('reu.force.kp={a: 1}', 'isa: reu.force.kp = {a: 1}: not a value of a parameter'),
 ])

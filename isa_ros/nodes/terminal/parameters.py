@@ -6,7 +6,9 @@ from typing import Any, NamedTuple
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, one_line
 from isa_ros.nodes.terminal.visitor import absolute, visiting, Visitor
-from rcl_interfaces.srv import GetParameters, ListParameters, SetParametersAtomically
+from rcl_interfaces.msg import ParameterDescriptor
+from rcl_interfaces.srv import (
+    DescribeParameters, GetParameters, ListParameters, SetParametersAtomically)
 from rclpy.parameter import Parameter, parameter_value_to_python
 import yaml
 
@@ -42,6 +44,7 @@ def set_parameters(node: str, changes: Sequence[ParameterChange], timeout_s: flo
         before = _values(visitor, path, changes)
         wanted = [_parameter(change) for change in changes if change.text is not None]
         if wanted:
+            _refuse_beyond(visitor, path, wanted)
             result = _asked(visitor, path, 'set_parameters_atomically', SetParametersAtomically,
                             SetParametersAtomically.Request(
                                 parameters=[each.to_parameter_msg() for each in wanted])).result
@@ -69,6 +72,29 @@ def _number(value: Any) -> Any:
         return float(value)
     except ValueError:
         return value
+
+
+def _refuse_beyond(visitor: Visitor, path: str, wanted: Sequence[Parameter]) -> None:
+    """Refuse what a node would, which says neither unit nor meaning."""
+    described = _asked(visitor, path, 'describe_parameters', DescribeParameters,
+                       DescribeParameters.Request(names=[own.name for own in wanted])).descriptors
+    for own, known in zip(wanted, described):
+        needed = needed_of(own.value, known)
+        if needed:
+            raise ConfigError(one_line(f'{path}: {own.name} = {own.value}, must be {needed}'))
+
+
+def needed_of(value: Any, known: ParameterDescriptor) -> str:
+    """Return what a value must be by the descriptor of its parameter; '' if it is."""
+    meaning = f': {known.description}' if known.description else ''
+    if known.type not in (Parameter.Type.DOUBLE.value, Parameter.Type.INTEGER.value):
+        return ''
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return f'a number{meaning}'
+    for bounds in (*known.floating_point_range, *known.integer_range):
+        if not bounds.from_value <= value <= bounds.to_value:
+            return f'{bounds.from_value:g} to {bounds.to_value:g}{meaning}'
+    return ''
 
 
 def _values(visitor: Visitor, path: str, changes: Sequence[ParameterChange]) -> list[Any]:
