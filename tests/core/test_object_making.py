@@ -100,3 +100,11 @@ def test_an_answer_that_is_not_whole_is_one_line(directory, monkeypatch, told):
     with pytest.raises(RunError, match='^machine code: [^\n]+$'):
         made(('move',))
     assert not directory.exists()
+
+
+def test_too_few_answers_make_no_object(directory, monkeypatch):
+    monkeypatch.setattr(bitcode, '_PROGRAM', 'import pickle, sys\n'
+                        'pickle.dump((b"one",), sys.stdout.buffer)')
+    with pytest.raises(ValueError, match='shorter'):
+        made(('move', 'count'))
+    assert not directory.exists()
