@@ -71,7 +71,7 @@ def find(
     Return the user's file ``name``, or else the shipped file of that name.
 
     The ending .yaml may be left out for shipped files. ``others`` are names by what they are, as
-    models, that would have done as well: for the message.
+    models, that would have done as well: for the message, as the user's own files are.
 
     Raises
     ------
@@ -87,7 +87,8 @@ def find(
         if known in files:
             return files[known]
     written = files if name.endswith('.yaml') else [known.removesuffix('.yaml') for known in files]
-    near = near_names(name, chain(written, *others.values()))
+    own = map(str, path.parent.glob('*.yaml'))
+    near = near_names(name, chain(own, written, *others.values()))
     lists = {'shipped': tuple(files), **others}
     raise ConfigError(f'{name}: no such file; ' + (
         f'did you mean {near}?' if near else

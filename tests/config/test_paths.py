@@ -53,6 +53,19 @@ def test_a_name_is_suggested_as_it_was_written() -> None:
         assert [name.endswith('.yaml') for name in names] == [bool(ending)] * len(names)
 
 
+@pytest.mark.parametrize(('folder', 'name'), [
+    ('.', 'my_ram'), ('.', 'my_rm.yaml'), ('own', 'own/my_ram'), ('own', 'own/my_ramm.yaml')])
+def test_a_file_of_the_user_is_suggested_with_its_ending_and_folder(
+        folder: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = Path(folder, 'my_ram.yaml')
+    path.parent.mkdir(exist_ok=True)
+    path.touch()
+    with pytest.raises(ConfigError) as caught:
+        paths.find(name, paths.CONFIG)
+    assert str(caught.value).startswith(f'{name}: no such file; did you mean {path}')
+
+
 def test_an_installed_share_directory_is_found(
         tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As after `colcon build` and sourcing: the package is not in a clone."""
