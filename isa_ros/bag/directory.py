@@ -58,7 +58,11 @@ def files_to_replace(directory: Path, overwrite: bool) -> list[Path]:
         return []
     if not directory.is_dir():
         raise BagError(f'{directory}: is a file, must be the name of a directory')
-    files = _files_of_bag(directory) if any(directory.iterdir()) else []
+    if not any(directory.iterdir()):
+        if not overwrite:
+            raise _exists(directory, 'takes it, as it is empty')
+        return []
+    files = _files_of_bag(directory)
     if not overwrite:
         raise _exists(directory)
     return files
@@ -88,7 +92,6 @@ def _files_of_bag(directory: Path) -> list[Path]:
     return [*(directory / name for name in names), metadata]
 
 
-def _exists(directory: Path) -> BagError:
-    what = 'replaces the bag in it' if any(directory.iterdir()) else 'takes it, as it is empty'
+def _exists(directory: Path, what: str = 'replaces the bag in it') -> BagError:
     return BagError(
         f'{directory} already exists; --overwrite, in Python overwrite=True, {what}')

@@ -44,12 +44,12 @@ def set_parameters(node: str, changes: Sequence[ParameterChange], timeout_s: flo
         before = _values(visitor, path, changes)
         wanted = [_parameter(change) for change in changes if change.text is not None]
         if wanted:
-            _refuse_beyond(visitor, path, wanted)
             result = _asked(visitor, path, 'set_parameters_atomically', SetParametersAtomically,
                             SetParametersAtomically.Request(
                                 parameters=[each.to_parameter_msg() for each in wanted])).result
             if not result.successful:
-                raise ConfigError(f'{path}: {one_line(result.reason)}')
+                reason = _beyond(visitor, path, wanted) or result.reason
+                raise ConfigError(f'{path}: {one_line(reason)}')
         after = _values(visitor, path, changes) if wanted else before
     for change, old, new in zip(changes, before, after, strict=True):
         print_line(f'{change.name}: {new}' if change.text is None
@@ -74,14 +74,15 @@ def _number(value: Any) -> Any:
         return value
 
 
-def _refuse_beyond(visitor: Visitor, path: str, wanted: Sequence[Parameter]) -> None:
-    """Refuse what a node would, which says neither unit nor meaning."""
+def _beyond(visitor: Visitor, path: str, wanted: Sequence[Parameter]) -> str:
+    """Return which value was refused for its type or range, with its meaning; '': for neither."""
     described = _asked(visitor, path, 'describe_parameters', DescribeParameters,
                        DescribeParameters.Request(names=[own.name for own in wanted])).descriptors
     for own, known in zip(wanted, described):
         needed = needed_of(own.value, known)
         if needed:
-            raise ConfigError(one_line(f'{path}: {own.name} = {own.value}, must be {needed}'))
+            return f'{own.name} = {own.value}, must be {needed}'
+    return ''
 
 
 def needed_of(value: Any, known: ParameterDescriptor) -> str:
