@@ -22,7 +22,7 @@ LARGE = 3000
 """
 Instructions, with all that is called, beyond which LLVM decides whether a function is inlined.
 
-Without a bound the object of the actuators' tick has 740 kB instead of 330 and takes twice as
+Without a bound the object of the actuators' tick has 750 kB instead of 220 and takes twice as
 long; a tick of the leg then takes 2 % less, one of a rig with hoses 5 %.
 """
 _NOWHERE = 1    # the address of what is not emitted
