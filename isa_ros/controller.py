@@ -9,6 +9,7 @@ from inspect import signature
 from typing import Any, NamedTuple
 
 from isa_ros.core.signals import Records, SAMPLE
+from isa_ros.core.suggest import listed
 from isa_ros.errors import ConfigError, RunError
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -111,10 +112,12 @@ class Controller:
             A value is refused.
 
         """
+        arguments = signature(cls)
         try:
-            signature(cls).bind(**values)
+            arguments.bind(**values)
         except TypeError as error:
-            raise ConfigError(f'{where}: {cls.__name__} {error}') from error
+            takes = listed([*arguments.parameters])
+            raise ConfigError(f'{where}: {cls.__name__} {error}; it takes {takes}') from error
         return cls(**values)
 
     def start(self, names: Sequence[str]) -> None:

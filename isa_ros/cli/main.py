@@ -33,6 +33,8 @@ _NAME = re.compile(r"[^\s',]+")
 class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors."""
 
+    _is_mixed = False
+
     def error(self, message: str) -> NoReturn:
         chosen = _CHOICE.match(message)
         if chosen is not None:      # of a dozen commands, name the nearest
@@ -42,10 +44,20 @@ class _Parser(argparse.ArgumentParser):
 
     def parse_known_args(   # type: ignore[no-untyped-def]
             self, args=None, namespace=None):
-        """Refuse what a command does not know by its own name: `isa` knows less of it."""
+        """
+        Refuse what a command does not know by its own name: `isa` knows less of it.
+
+        A word that may be left out is taken as left out once an option comes before it, so what
+        is unknown at first is read once more, the options before the words.
+        """
         found, unknown = super().parse_known_args(args, namespace)
-        if unknown and ' ' in self.prog:
-            self.error(f'unrecognized arguments: {" ".join(unknown)}')
+        if unknown and ' ' in self.prog and not self._is_mixed:
+            if self._subparsers is None:
+                self._is_mixed = True       # by which this method is called again
+                found, unknown = self.parse_known_intermixed_args(args, namespace)
+                self._is_mixed = False
+            if unknown:
+                self.error(f'unrecognized arguments: {" ".join(unknown)}')
         return found, unknown
 
 

@@ -50,8 +50,8 @@ def command_arguments(parser: argparse.ArgumentParser) -> None:
                           dest='request', help='a request to its device, instead of a setpoint')
     _timeout(parser)
     parser.epilog = (
-        'POSITION stands before the options. Exits with 1 if the device declines a request or '
-        'follows no setpoint, 3 after the timeout.')
+        'Exits with 1 if the device declines a request or follows no setpoint, 3 after the '
+        'timeout.')
 
 
 def _timeout(parser: argparse.ArgumentParser) -> None:

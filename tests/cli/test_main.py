@@ -77,6 +77,10 @@ def test_debug_shows_the_traceback_and_keeps_the_exit_code(
     (['params', 'isa_v5', '--presets', 'x'], 'unrecognized arguments: --presets'),
     (['bode', 'isa_v5', '--open'],
      'isa bode: unrecognized arguments: --open; see isa bode --help'),
+    (['command', 'ram', '--stiffness', '1e5', '0.1', '0.2'],
+     'isa command: unrecognized arguments: 0.2; see isa command --help'),
+    (['bus', '--fast', 'ethercat', 'leg', '--interface', 'ecs'],
+     'isa bus: unrecognized arguments: --fast; see isa bus --help'),
 ])
 def test_wrong_usage_is_one_line_and_2(
         arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -85,6 +89,22 @@ def test_wrong_usage_is_one_line_and_2(
     assert caught.value.code == 2
     printed = capsys.readouterr().err
     assert expected in printed and printed.count('\n') == 1
+
+
+@pytest.mark.parametrize('words', [
+    'ram 0.1 --stiffness 1e5 --velocity -0.3', 'ram --stiffness 1e5 0.1 --velocity -0.3',
+    '--stiffness 1e5 ram --velocity -0.3 0.1'])
+def test_what_may_be_left_out_may_stand_anywhere(words: str) -> None:
+    options = cli.make_parser(['command']).parse_args(['command', *words.split()])
+    assert (options.actuator, options.position, options.velocity, options.stiffness) == (
+        'ram', 0.1, -0.3, 1e5)
+
+
+def test_names_may_stand_behind_an_option() -> None:
+    options = cli.make_parser(['actuators']).parse_args(
+        ['actuators', 'leg', '--set', 'hfe.load.mass=3', 'hfe', 'kfe'])
+    assert (options.config, options.names, options.set) == (
+        'leg', ['hfe', 'kfe'], ['hfe.load.mass=3'])
 
 
 @pytest.mark.parametrize('arguments, expected', [

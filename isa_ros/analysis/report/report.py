@@ -60,13 +60,13 @@ def recorded(path: Path) -> Recorded:
     signals = read_signals(bag, needs_values=False).possible()
     history = history_of(bag, signals.run)
     events = events_in(signals.run, history)
-    end_s = float(signals.time[-1])
+    bands = bands_of(signals.run, history, float(signals.time[-1]))
     figure = None if signals.problem else figure_of_scenario(
         parse(bag.provenance.scenario, SCENARIO), Place(SCENARIO))
     return Recorded(
-        name_of(path), signals, events, bands_of(signals.run, history, end_s),
-        recorded_accounts(bag), what_ran(bag, name_of(path), signals),
-        verdict(signals, events, ending(bag)), figure)
+        name_of(path), signals, events, bands, recorded_accounts(bag),
+        what_ran(bag, name_of(path), signals), verdict(signals, events, bands, ending(bag)),
+        figure)
 
 
 def name_of(bag: Path) -> str:

@@ -3,19 +3,25 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import settling_time
+from isa_ros.analysis.report.key_figures import ripple_at_end, settling_time
 from isa_ros.analysis.report.limits import reached_limits
+from isa_ros.analysis.report.marks import Band
 from isa_ros.analysis.signals.signals import LARGEST, Signals
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.core.device import ENABLED, state_name
 from isa_ros.core.suggest import listed
 from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
+from isa_ros.text.table import digits
 import numpy as np
 
 GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
+_RIPPLE = 0.01  # of the range of the force sensor: more at the end of a motion is told
 _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
     REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
+_SETTLED, _ON = 'Settled', state_name(ENABLED)
 
 
 class Statement(NamedTuple):
@@ -26,8 +32,13 @@ class Statement(NamedTuple):
     text: str
 
 
-def verdict(signals: Signals, events: Sequence[Event], ending: str) -> list[Statement]:
-    """Return the statements about a run; ``ending`` is why it did not come to its end, or ''."""
+def verdict(signals: Signals, events: Sequence[Event], bands: Sequence[Band], ending: str
+            ) -> list[Statement]:
+    """
+    Return the statements about a run.
+
+    ``bands`` are the states of its devices, ``ending`` is why it did not come to its end, or ''.
+    """
     end = float(signals.time[-1])
     found = [Statement(BAD, ending) if ending else
              Statement(GOOD, f'The run came to its end, t = {end:.3f} s.')]
@@ -44,7 +55,7 @@ def verdict(signals: Signals, events: Sequence[Event], ending: str) -> list[Stat
     found += [Statement(NOTE, f'Limit reached: {own}.') for own in limits]
     if not limits:
         found.append(Statement(GOOD, 'No loop, end stop or relief valve reached its limit.'))
-    return [*found, *_motion(signals)]
+    return [*found, *_motion(signals, bands), *_ripples(signals)]
 
 
 def _told(word: str, grade: str, events: Sequence[Event]) -> Iterator[Statement]:
@@ -55,8 +66,8 @@ def _told(word: str, grade: str, events: Sequence[Event]) -> Iterator[Statement]
         yield Statement(grade, f'{word}: {len(events) - _MOST} more, see the events.')
 
 
-def _motion(signals: Signals) -> Iterator[Statement]:
-    """Yield which actuators stood still, settled, or still move at the end."""
+def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
+    """Yield which actuators stood still, settled, or still move at the end, and by what device."""
     words: dict[str, list[str]] = {}
     for own in signals.run.actuators:
         t, x = signals.drawn(f'{own.name}.position')
@@ -64,9 +75,32 @@ def _motion(signals: Signals) -> Iterator[Statement]:
             continue
         settled = settling_time(t, x)
         word = ('Did not move' if np.ptp(x) == 0.0 else
-                'Still moving at the end' if settled is None else 'Settled')
+                'Still moving at the end' if settled is None else
+                _word_at_rest(own, settled, bands))
         words.setdefault(word, []).append(
             own.name if settled is None else f'{own.name} at t = {settled:.3f} s')
     for word in sorted(words):
-        yield Statement(NOTE if word.startswith('Still') else GOOD,
-                        f'{word}: {", ".join(words[word])}.')
+        is_good = word in ('Did not move', _SETTLED)
+        yield Statement(GOOD if is_good else NOTE, f'{word}: {", ".join(words[word])}.')
+
+
+def _word_at_rest(own: ActuatorConfig, t_s: float, bands: Sequence[Band]) -> str:
+    """Return what is said of an actuator that came to rest; its device may be off by then."""
+    for band in bands:
+        if band.source == own.name and band.begin_s <= t_s < band.end_s:
+            return _SETTLED if band.state == _ON else f'Came to rest, its device {band.state}'
+    return _SETTLED
+
+
+def _ripples(signals: Signals) -> Iterator[Statement]:
+    """Yield forces that vary on where the motion has settled, as those of loops that hunt do."""
+    for own in signals.run.actuators:
+        position, force = (signals.drawn(f'{own.name}.{field}') for field in ('position', 'force'))
+        if not len(position.t) or settling_time(*position) is None:
+            continue
+        ripple, span = ripple_at_end(force.values), own.sheet.plant.sensors.force_range
+        if ripple is not None and ripple > _RIPPLE * span:
+            yield Statement(NOTE, (
+                f'Force varies in the last tenth of the time: {own.name} by '
+                f'+-{digits(ripple, 3)} {signals.unit(f"{own.name}.force")}, '
+                f'{100.0 * ripple / span:.2g} % of the range of its sensor.'))

@@ -4,7 +4,7 @@ import isa_ros
 from isa_ros.analysis.report.key_figures import (
     error_of, key_rows, landing_rows, landings, ripple_at_end, tracking_error)
 from isa_ros.analysis.report.limits import reached_limits
-from isa_ros.analysis.report.marks import bands_of, marks_of, MOST
+from isa_ros.analysis.report.marks import Band, bands_of, marks_of, MOST
 from isa_ros.analysis.report.verdict import BAD, GOOD, NOTE, verdict
 from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
 from isa_ros.core.signals import SAMPLE
@@ -28,7 +28,7 @@ def texts(found, grade):
 
 
 def test_a_quiet_run_is_good():
-    found = verdict(signals(position=np.full(101, 0.04)), [], '')
+    found = verdict(signals(position=np.full(101, 0.04)), [], [], '')
     assert found[0] == (GOOD, 'The run came to its end, t = 1.000 s.')
     assert texts(found, GOOD)[1:] == [
         'Nothing tripped.', 'No loop, end stop or relief valve reached its limit.',
@@ -44,11 +44,12 @@ def test_samples_that_no_run_has_are_left_out_and_told():
     assert own.impossible == ('ram.position',)
     assert np.flatnonzero(np.isnan(own['ram.position'])).tolist() == [3, 5, 7]
     assert own['ram.force'].tolist() == [2e3] * 101
-    assert 'Not shown: samples beyond 1e+30 of ram.position.' in texts(verdict(own, [], ''), BAD)
+    assert 'Not shown: samples beyond 1e+30 of ram.position.' in texts(
+        verdict(own, [], [], ''), BAD)
 
 
 def test_an_end_that_was_none_is_bad():
-    found = verdict(signals(), [], 'The run ended by an error: lost.')
+    found = verdict(signals(), [], [], 'The run ended by an error: lost.')
     assert found[0] == (BAD, 'The run ended by an error: lost.')
 
 
@@ -57,7 +58,7 @@ def test_an_end_that_was_none_is_bad():
     ('refused', NOTE, 'Refused'), ('cavity', NOTE, 'Cavitated'),
     ('overpressure', BAD, 'Overpressure')])
 def test_events_are_told_with_their_time(kind, grade, word):
-    found = verdict(signals(), [Event(0.25, 'ram', kind, 'overload')] * 8, '')
+    found = verdict(signals(), [Event(0.25, 'ram', kind, 'overload')] * 8, [], '')
     own = [text for text in texts(found, grade) if text.startswith(word)]
     assert own == [f'{word}: ram, overload, t = 0.250000 s.'] * 6 + [
         f'{word}: 2 more, see the events.']
@@ -65,15 +66,45 @@ def test_events_are_told_with_their_time(kind, grade, word):
 
 
 def test_what_settles_is_told_apart_from_what_moves():
-    settles = verdict(signals(position=0.05 - 0.01 * np.exp(-T / 0.05)), [], '')
+    settles = verdict(signals(position=0.05 - 0.01 * np.exp(-T / 0.05)), [], [], '')
     assert [text for text in texts(settles, GOOD) if text.startswith('Settled')] == [
         'Settled: ram at t = 0.200 s.']
-    moves = verdict(signals(position=0.04 + 0.01 * T), [], '')
+    moves = verdict(signals(position=0.04 + 0.01 * T), [], [], '')
     assert texts(moves, NOTE) == ['Still moving at the end: ram.']
 
 
+def test_what_comes_to_rest_while_its_device_is_off_has_not_settled():
+    """Settled at 0.2 s: who was off then is told, not who was off before or after."""
+    own = signals(position=0.05 - 0.01 * np.exp(-T / 0.05))
+
+    def told(*bands):
+        return {words.text: words.grade for words in verdict(own, [], bands, '')
+                if 'ram at t' in words.text}
+    at_first = Band('ram', 0.0, 0.1, 'enabled')
+    assert told(at_first, Band('ram', 0.1, 1.0, 'disabled')) == {
+        'Came to rest, its device disabled: ram at t = 0.200 s.': NOTE}
+    assert told(Band('ram', 0.0, 0.2, 'fault'), Band('other', 0.0, 1.0, 'fault'),
+                Band('ram', 0.2, 0.5, 'enabled'), Band('ram', 0.5, 1.0, 'disabled')) == {
+        'Settled: ram at t = 0.200 s.': GOOD}
+
+
+def test_a_force_that_varies_where_the_motion_has_settled_is_told():
+    """A square wave of +-1.01 % of the range of the sensor about 2 kN; one of 0.99 % is not."""
+    rest, span = 0.05 - 0.01 * np.exp(-T / 0.05), SHEET.plant.sensors.force_range
+    wave = 0.01 * span * (-1.0) ** np.arange(101)
+
+    def told(share, position=rest):
+        found = verdict(signals(position=position, force=2e3 + share * wave), [], [], '')
+        return [text for text in texts(found, NOTE) if text.startswith('Force')]
+    assert told(1.01) == [
+        f'Force varies in the last tenth of the time: ram by +-{0.0101 * span:.3g} N, 1 % of the '
+        'range of its sensor.']
+    assert told(0.99) == [] == told(9.0, 0.04 + 0.01 * T)
+    assert told(np.where(T < 0.85, 9.0, 0.5)) == []
+
+
 def test_of_another_version_no_limits_are_told():
-    found = verdict(signals('unknown key', position=np.zeros(101)), [], '')
+    found = verdict(signals('unknown key', position=np.zeros(101)), [], [], '')
     assert [own.text for own in found] == [
         'The run came to its end, t = 1.000 s.', 'Nothing tripped.']
 

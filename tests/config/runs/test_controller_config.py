@@ -148,7 +148,8 @@ def test_refused_as_the_file_is_read(controllers, message):
     ({'class': 'tests.config.runs.pullers:NO_CLASS'},
      'NO_CLASS is of type int, must be a class'),
     ({'class': PULLER, 'force': 2.0, 'actuator': 'hfe', 'farce': 2.0},
-     "leg.yaml: controllers.pull: Puller got an unexpected keyword argument 'farce'"),
+     "leg.yaml: controllers.pull: Puller got an unexpected keyword argument 'farce'; it takes "
+     'force, actuator'),
     ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
     ({'class': 'tests.config.runs.pullers:Absent'},
      'leg.yaml: controllers.pull: SystemExit: 0 (pullers.py:'),
