@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from inspect import signature
 from typing import Any, NamedTuple
 
+from isa_ros.core.record import attributed, row_record
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.suggest import listed
 from isa_ros.errors import ConfigError, RunError
@@ -143,7 +144,7 @@ class Controller:
 
 def only_rows(rows: Mapping[str, NDArray[np.void]]) -> dict[str, np.record]:
     """Return the only row of each array, (1,), with its fields as attributes, by name."""
-    return {name: own.view(np.recarray)[0] for name, own in rows.items()}
+    return {name: row_record(own) for name, own in rows.items()}
 
 
 def only_of(records: Mapping[str, np.record]) -> np.record | None:
@@ -153,4 +154,4 @@ def only_of(records: Mapping[str, np.record]) -> np.record | None:
 
 def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:
     """Return rows with their fields as attributes, on the same memory, by name."""
-    return dict(zip(names, rows.view(np.recarray)))
+    return dict(zip(names, rows.view(attributed(rows.dtype))))

@@ -2,6 +2,7 @@
 
 import isa_ros
 from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.core.record import row_record
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.surroundings.bodies.leg.leg import Leg, LegPose
 from isa_ros.surroundings.bodies.leg.motion import (
@@ -29,7 +30,7 @@ class LegMechanism:
             foot_height=start.foot_height_mm * 1e-3), mounting.step_ns)
         self._leg = leg_record(config.sheet)[0]
         self._release = start.release_s - 0.5 / NS_PER_SECOND
-        at_rest = np.frombuffer(leg.snapshot(), LEG_STATE, 1, 8).view(np.recarray)[0]
+        at_rest = row_record(np.frombuffer(leg.snapshot(), LEG_STATE, 1, 8))
         self.state = np.array([*continuous(at_rest), 0.0])
 
     def _of(self, state: np.ndarray) -> tuple[ContinuousState, bool]:

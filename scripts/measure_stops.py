@@ -9,9 +9,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.ratings import valve_lag
-from isa_ros.actuator.rows import Memory, row_record
+from isa_ros.actuator.rows import Memory
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.device import ENABLED, FAULT_REACTION, QUICK_STOP
+from isa_ros.core.record import row_record
 from isa_ros.plant.plant import plant_record
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation

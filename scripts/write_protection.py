@@ -14,6 +14,7 @@ from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.parameter import defaults
+from isa_ros.core.record import row_record
 from isa_ros.core.units import of_coordinate, quantity
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.text.marked import with_parts
@@ -75,7 +76,7 @@ def _levels() -> Iterator[list[str]]:
 def _constants(model: str) -> tuple[np.record, bool]:
     found = actuator_model(model, 'model')
     sheet = build(ActuatorSheet, found.with_preset(DEFAULT_PRESET, 'preset'), found.place)
-    row = actuator_record(sheet, 0).view(np.recarray)[0]
+    row = row_record(actuator_record(sheet, 0))
     return row.reu.protection, sheet.is_rotary
 
 

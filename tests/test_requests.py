@@ -4,6 +4,7 @@ import math
 
 from isa_ros.controller import Setpoint, Setpoints
 from isa_ros.core.device import FORCE, IMPEDANCE, POSITION
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
     HAS_SETPOINT, SAMPLE)
@@ -77,7 +78,7 @@ def test_gains_alone_are_a_command_of_their_own():
     ('force', IMPEDANCE, False), ('impedance', FORCE, True)])
 def test_an_effort_needs_a_position_where_the_mode_uses_it(mode, in_force, is_refused):
     """Else it becomes the measured one: the position stays where a later mode begins."""
-    sample = np.zeros(1, SAMPLE).view(np.recarray)[0]
+    sample = row_record(np.zeros(1, SAMPLE))
     sample.device_mode, sample.position = in_force, 0.03
     rows = np.zeros(1, COMMAND)
     setpoints = {'haa': Setpoint(effort=-50.0, mode=mode)}
@@ -99,7 +100,7 @@ def test_an_effort_needs_a_position_where_the_mode_uses_it(mode, in_force, is_re
     (Setpoint(0.03, mode='position'), FORCE, ''), (Setpoint(0.03), POSITION, '')])
 def test_a_position_alone_is_refused_where_the_mode_uses_the_effort(setpoint, in_force, needed):
     """Else a load that the effort bears falls: its effort would become 0."""
-    sample = np.zeros(1, SAMPLE).view(np.recarray)[0]
+    sample = row_record(np.zeros(1, SAMPLE))
     sample.device_mode = in_force
     if needed:
         with pytest.raises(SetpointError, match=f'position = 0.03 needs its {needed}'):

@@ -16,7 +16,7 @@ from isa_ros.actuator.link import NONE
 from isa_ros.actuator.requests import (
     deafness_of, link_answer, mode_after, mode_command, refusal_of, start_mode)
 from isa_ros.actuator.rest import put_at_rest
-from isa_ros.actuator.rows import Memory, memory_of, row_record
+from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.saved_rows import SavedRows
 from isa_ros.actuator.setpoint_in_force import gain_after, setpoint_after, SetpointInForce
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
@@ -25,6 +25,7 @@ from isa_ros.actuator.timing import Timing
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gains_command, Tuning
 from isa_ros.core.bound import Bound
+from isa_ros.core.record import row_record
 from isa_ros.core.saved_state import TIME_BYTES, time_of
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.errors import ConfigError, SimulationDiverged

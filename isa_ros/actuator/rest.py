@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.inbox import write_applied
 from isa_ros.actuator.kernel import write_sample
-from isa_ros.actuator.rows import Memory, row_record
+from isa_ros.actuator.rows import Memory
 from isa_ros.core.kernel import kernel_function
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.cushion import divide
 from isa_ros.plant.plant import exact_force

@@ -87,12 +87,6 @@ def memory_of(n: int) -> Memory:
         fed=np.zeros(n, SUPPLY_REPLY))
 
 
-def row_record(rows: np.ndarray) -> np.record:
-    """Return the first row with its fields as attributes, on the same memory."""
-    row: np.record = rows.view(np.recarray)[0]
-    return row
-
-
 def row_of(memory: Memory, row: int) -> Memory:
     """Return the memory of one actuator: views on its rows."""
     n = len(memory.ports)

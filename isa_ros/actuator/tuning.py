@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.link import link_record, NONE
-from isa_ros.actuator.rows import row_record
 from isa_ros.actuator.service_channel import nothing, ServiceChannel, travels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import (
@@ -13,6 +12,7 @@ from isa_ros.actuator.tunable import (
 from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, local_port, LocalLoad, move_support, write_port

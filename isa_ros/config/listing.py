@@ -1,7 +1,6 @@
 """`isa params`: every parameter of a model, a leg or a run with unit, range and source."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
 from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
@@ -20,6 +19,7 @@ from isa_ros.config.text.keys import Leaf
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
 from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import read, Tree
+from isa_ros.core.frozen import fields_of
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
@@ -108,7 +108,7 @@ def _rows(
         parameters: Parameters, source_of: Mapping[str, str], prefix: str,
         narrower: Mapping[str, Usable]) -> Iterator[ListedValue]:
     hints = get_type_hints(type(parameters))
-    for f in fields(parameters):
+    for f in fields_of(type(parameters)):
         value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
             if not isinstance(hints[f.name], type):
@@ -157,7 +157,7 @@ def _run_tables(
 def _given(parameters: Parameters, source: str, prefix: str = '') -> dict[str, str]:
     """Return the source of all values that are not those of a file which leaves them out."""
     found = {f'{prefix}kind': source}
-    for f in fields(parameters):
+    for f in fields_of(type(parameters)):
         value = getattr(parameters, f.name)
         if isinstance(value, Parameters):
             found |= _given(value, source, f'{prefix}{f.name}.')

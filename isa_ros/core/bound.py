@@ -10,13 +10,13 @@ it too.
 
 from collections.abc import Callable, Iterator, Sequence
 import ctypes
-from functools import cache
 from operator import is_
 from typing import Any, NamedTuple
 
 from isa_ros.core.kernel import entry_of, IS_COMPILED, kernel
 from isa_ros.core.kinds import kind_of
 from isa_ros.core.pointers import call_at
+from isa_ros.core.record import attributed
 import numpy as np
 from numpy.typing import NDArray
 
@@ -80,37 +80,10 @@ def _call_of(address: int, table: NDArray[np.int64], memory: Any) -> Callable[[]
     return call
 
 
-class _Row(np.void):     # type: ignore[misc]  # as numpy.record, which is one
-    """A row with its fields as attributes, in a third of the time that `np.record` takes."""
-
-    def __getattr__(self, name: str) -> Any:
-        """Return a field; what numpy has of that name comes first."""
-        try:
-            return self[name]
-        except ValueError:
-            raise AttributeError(name) from None
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Fill a field."""
-        self[name] = value
-
-
-@cache
-def _rows_of(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """Return a type of the same memory whose records, also nested ones, are `_Row`."""
-    if dtype.subdtype is not None:
-        return np.dtype((_rows_of(dtype.base), dtype.shape))
-    if dtype.names is None or dtype.fields is None:
-        return dtype
-    return np.dtype((_Row, {
-        'names': dtype.names, 'formats': [_rows_of(dtype[name]) for name in dtype.names],
-        'offsets': [dtype.fields[name][1] for name in dtype.names], 'itemsize': dtype.itemsize}))
-
-
 def _with_attributes(memory: Any) -> Any:
     """Return a memory whose rows have attributes, for kernels that are plain Python."""
     parts = [_with_attributes(part) if isinstance(part, tuple)
-             else part if part.dtype.names is None else part.view(_rows_of(part.dtype))
+             else part if part.dtype.names is None else part.view(attributed(part.dtype))
              for part in memory]
     form = type(memory)
     return tuple(parts) if form is tuple else form(*parts)

@@ -8,9 +8,10 @@ and saved states have its number.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
+from isa_ros.core.frozen import fields_of
 from isa_ros.core.parameter import check, Parameters, replaced_together
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
@@ -106,7 +107,7 @@ def marked(
         parameters: Parameters, mark: str, prefix: str = ''
         ) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
     """Yield dotted key, value and declaration of the parameters with a mark."""
-    for f in fields(parameters):
+    for f in fields_of(type(parameters)):
         value, key = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
             yield from marked(value, mark, f'{key}.')
@@ -117,7 +118,7 @@ def marked(
 def sound(parameters: P) -> P:
     """Return a set without faults: every `fault` is 0; the same object if there is none."""
     found = {}
-    for f in fields(parameters):
+    for f in fields_of(type(parameters)):
         value: Any = getattr(parameters, f.name)
         if isinstance(value, Parameters):
             without: Any = sound(value)

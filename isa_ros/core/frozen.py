@@ -8,6 +8,7 @@ instance.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, Field, field, fields, FrozenInstanceError
+from functools import cache
 from operator import attrgetter
 from reprlib import recursive_repr
 from typing import Any, overload, TYPE_CHECKING, TypeVar
@@ -20,6 +21,10 @@ else:
         return lambda decorator: decorator
 
 _T = TypeVar('_T')
+
+
+fields_of: Callable[[Any], tuple[Field[Any], ...]] = cache(fields)
+"""The fields of a class as `dataclasses.fields` has them, which lists them anew at each call."""
 
 
 class _Initialiser:

@@ -5,7 +5,7 @@ A word has 64 bits. An array is its address and shape, and its strides where it 
 record its address; a number its bits; a tuple the words of its parts.
 """
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from functools import cache
 from importlib import import_module
 import struct
@@ -72,10 +72,10 @@ def kind_of(value: Any) -> Kind:
         if -_LARGEST <= value < _LARGEST:
             return number
     elif isinstance(value, np.void):
-        return _of_record(value.dtype)
+        return _of_record(value.dtype, type(value))     # type: ignore[arg-type]  # a class
     elif isinstance(value, np.ndarray):
-        flags = value.flags
-        return _of_array(value.dtype, value.ndim, not flags.c_contiguous, flags.writeable)
+        flags, own = value.flags, value.dtype
+        return _of_array(own, own.type, value.ndim, not flags.c_contiguous, flags.writeable)
     elif isinstance(value, tuple):
         return TupleKind(type(value), tuple(map(kind_of, value)))
     elif isinstance(value, np.number | np.bool_) and value.dtype.kind in 'biuf':
@@ -83,7 +83,24 @@ def kind_of(value: Any) -> Kind:
     raise UnknownKind(type(value).__name__)
 
 
-_of_record, _of_array = cache(RecordKind), cache(ArrayKind)
+_record, _array = cache(RecordKind), cache(ArrayKind)
+
+
+@cache
+def _of_record(dtype: np.dtype[Any], form: Hashable) -> RecordKind:
+    """
+    Return the kind of a row.
+
+    Types that are equal and have rows of different classes are apart in this cache, as comparing
+    them takes longer than a kernel; their kind is the same one.
+    """
+    return _record(dtype)
+
+
+@cache
+def _of_array(dtype: np.dtype[Any], form: Hashable, *rest: Any) -> ArrayKind:
+    """Return the kind of an array, as `_of_record`."""
+    return _array(dtype, *rest)
 
 
 @cache

@@ -1,13 +1,13 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, fields, replace
-from functools import cache
+from dataclasses import field, replace
+from functools import cache, cached_property
 from keyword import iskeyword
 import math
 from typing import Any, TypeVar
 
-from isa_ros.core.frozen import frozen
+from isa_ros.core.frozen import fields_of, frozen
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import after, in_si, quantity
 from isa_ros.errors import ConfigError, ParameterError
@@ -127,14 +127,26 @@ class Parameters:
     KIND = ''
     """In a file, where it is one of several sets; '': as the class is called."""
 
+    @cached_property
+    def as_text(self) -> str:
+        """Return the set as `repr`, kept with it: a set with other values keeps its parts'."""
+        shown = ', '.join(f'{f.name}={text_of(getattr(self, f.name))}'
+                          for f in fields_of(type(self)))
+        return f'{type(self).__qualname__}({shown})'
+
     def __post_init__(self) -> None:
-        for f in fields(self):
+        for f in fields_of(type(self)):
             value = getattr(self, f.name)
             if not isinstance(value, Parameters):
                 check(f'{type(self).__name__}.{f.name}', value, f.metadata)
 
 
 _P = TypeVar('_P', bound=Parameters)
+
+
+def text_of(value: object) -> str:
+    """Return a value as text; of equal sets it is equal, of -0.0 it is not that of 0.0."""
+    return value.as_text if isinstance(value, Parameters) else repr(value)
 
 
 def set_by_name(named: Mapping[str, Parameters], union: Any) -> Parameters:
@@ -162,7 +174,7 @@ def _named_class(names: tuple[str, ...], union: Any) -> type[Parameters]:
 
 def defaults(cls: type[_P]) -> _P:
     """Return a set of which every value is that of ``absent``."""
-    return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
+    return cls(**{f.name: f.metadata['absent'] for f in fields_of(cls)})
 
 
 def nested(absent: Parameters) -> Any:
@@ -199,7 +211,7 @@ def replaced_together(parameters: _P, values: Mapping[str, Any], where: str = ''
         A value is out of its range, or contradicts another one.
 
     """
-    names = [f.name for f in fields(parameters)]
+    names = [f.name for f in fields_of(type(parameters))]
     found: dict[str, Any] = {}
     below: dict[str, dict[str, Any]] = {}
     for key, value in values.items():

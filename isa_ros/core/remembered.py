@@ -4,6 +4,8 @@ from collections.abc import Callable
 from functools import lru_cache, update_wrapper
 from typing import ParamSpec, TypeVar
 
+from isa_ros.core.parameter import text_of
+
 MOST = 64
 """Results that a function keeps."""
 
@@ -38,6 +40,8 @@ def remembered(function: Callable[_Sets, _R]) -> Callable[_Sets, _R]:
         return question.call()
 
     def remembering(*sets: _Sets.args, **named: _Sets.kwargs) -> _R:
-        found = answer(_Question(lambda: function(*sets, **named), repr((sets, named))))
+        text = '\0'.join([*map(text_of, sets),
+                          *(f'{name}={text_of(value)}' for name, value in named.items())])
+        found = answer(_Question(lambda: function(*sets, **named), text))
         return found    # type: ignore[return-value]
     return update_wrapper(remembering, function)

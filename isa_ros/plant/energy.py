@@ -7,6 +7,7 @@ closes without a remainder: every term has its own formula, none is the rest of 
 
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
+from isa_ros.core.record import row_record
 import numpy as np
 
 _LN_2 = 0.6931471805599453
@@ -27,7 +28,7 @@ ENERGIES = np.dtype([
 
 def no_powers() -> np.record:
     """Return an `ENERGIES` record of zeros with its fields as attributes."""
-    powers: np.record = np.zeros(1, ENERGIES).view(np.recarray)[0]
+    powers: np.record = row_record(np.zeros(1, ENERGIES))
     return powers
 
 

@@ -8,7 +8,7 @@ State, rates and parameters are nested records of floats, one row per actuator
 from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
-from isa_ros.core.record import record
+from isa_ros.core.record import attributed, record
 from isa_ros.core.remembered import remembered
 from isa_ros.errors import ParameterError
 from isa_ros.plant import (
@@ -27,6 +27,7 @@ from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
+from numpy.typing import NDArray
 
 PLANT = np.dtype([
     ('coil', coil.COIL),
@@ -125,13 +126,13 @@ def is_heated(sheet: PlantSheet) -> bool:
     return isinstance(sheet.thermal, LumpedThermal)
 
 
-def plant_record(sheet: Plant) -> np.recarray:
+def plant_record(sheet: Plant) -> NDArray[np.void]:
     """Return the `PLANT` record of a sheet, shape (1,), the caller's own."""
     return _plant_record(sheet).copy()
 
 
 @remembered
-def _plant_record(sheet: Plant) -> np.recarray:
+def _plant_record(sheet: Plant) -> NDArray[np.void]:
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
     lands = valve_record.valve_record(sheet.valve, area_a / area_b)
@@ -169,7 +170,7 @@ def _plant_record(sheet: Plant) -> np.recarray:
         holding_b=holding_record(sheet.holding_b),
         spring=return_spring.spring_record(own_spring),
         **cushion.cushion_records(sheet),
-        )], PLANT).view(np.recarray)
+        )], attributed(PLANT))
 
 
 @kernel

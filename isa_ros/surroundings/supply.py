@@ -20,7 +20,7 @@ from functools import cached_property
 from isa_ros.core.bound import Bound, Rebound
 from isa_ros.core.frozen import frozen
 from isa_ros.core.parameter import nested, parameter, Parameters
-from isa_ros.core.record import floats
+from isa_ros.core.record import floats, row_record
 from isa_ros.core.saved_state import broken_number
 from isa_ros.core.signals import LOAD_REPLY, Records, SUPPLY_REPLY
 from isa_ros.core.timebase import PLANT_STEP
@@ -159,7 +159,7 @@ class Supply:
 
     def _hold(self) -> None:
         """Give an ideal supply its pressure."""
-        ideal = self._ideal(self._sheet).view(np.recarray)[0]
+        ideal = row_record(self._ideal(self._sheet))
         self.state['pressure'] = held_pressure(float(self.state['dump_opening'][0]), ideal)
 
     def _ideal(self, sheet: SupplySheet) -> np.ndarray:

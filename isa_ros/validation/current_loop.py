@@ -14,6 +14,7 @@ from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.response.step import step, StepResponse
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.core.parameter import replaced
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.paper.printed import cell, statement
@@ -80,8 +81,8 @@ def _static_gain() -> tuple[float, np.ndarray]:
     """Return the static gain of the coil (A/V), and its current after every plant step (A)."""
     constants = actuator_record(model_sheet(MANIFOLD, EXPLICIT), 0)
     own = integrated(np.zeros(1, LOAD_PORT)[0], np.zeros(1, SUPPLY_PORT)[0], constants[0])
-    coil = constants.view(np.recarray)[0].plant.coil
-    state = own.continuous.view(np.recarray)[0].plant.coil
+    coil = row_record(constants).plant.coil
+    state = row_record(own.continuous).plant.coil
     current = np.empty(round(OPEN_LOOP_S / PLANT_STEP))
     for k in range(len(current)):
         rk4_steps(1, PLANT_STEP, OPEN_LOOP_V, own)

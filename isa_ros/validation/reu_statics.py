@@ -6,6 +6,7 @@ position or a speed.
 """
 
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.record import row_record
 from isa_ros.core.units import MILLI
 from isa_ros.paper.printed import cell, Printed, statement
 from isa_ros.plant.servo_valve import flow_curve
@@ -36,8 +37,8 @@ def reu_statics() -> Findings:
 
 def _force_block(model: str) -> tuple[np.record, np.record]:
     """Return a force block and its state at rest."""
-    record = actuator_record(model_sheet(model), 0).view(np.recarray)[0].reu.force
-    return record, np.zeros(1, BLOCK_STATE).view(np.recarray)[0]
+    record = row_record(actuator_record(model_sheet(model), 0)).reu.force
+    return record, row_record(np.zeros(1, BLOCK_STATE))
 
 
 def proportional_gain(model: str) -> float:
@@ -120,8 +121,8 @@ def _impedance_gain(
         reading: str) -> Entry:
     """Return the force over a small displacement or speed against the setpoint."""
     sheet = model_sheet(model)
-    limits = actuator_record(sheet, 0).view(np.recarray)[0].reu.impedance
-    setpoint = np.zeros(1, SETPOINT).view(np.recarray)[0]
+    limits = row_record(actuator_record(sheet, 0)).reu.impedance
+    setpoint = row_record(np.zeros(1, SETPOINT))
     setpoint.stiffness, setpoint.damping = initial_gains(sheet.reu)
     small = SMALL * limits.force_out / printed.number
     force = force_reference(setpoint, moved[0] * small, moved[1] * small, limits)

@@ -11,6 +11,7 @@ from isa_ros.analysis.report.paper_figures import draw_force, paper_figure
 from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.core.constants import STANDARD_GRAVITY
+from isa_ros.core.record import row_record
 from isa_ros.loads.drop_rig import (
     DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE, Wheel)
 from isa_ros.paper.printed import statement
@@ -205,8 +206,8 @@ def _blocked(rig: DropRig) -> Entry:
 
 def blocked_peak(rig: DropRig) -> float:
     """Return the largest torque (Nm) of the rope on a wheel that does not turn  (L17-L19)."""
-    rope = np.array([rope_record(rig)], ROPE).view(np.recarray)[0]
-    weight = np.array([(rig.slack, 0.0, 1.0)], WEIGHT_STATE).view(np.recarray)[0]
+    rope = row_record(np.array([rope_record(rig)], ROPE))
+    weight = row_record(np.array([(rig.slack, 0.0, 1.0)], WEIGHT_STATE))
 
     def tension(state: np.ndarray) -> float:
         weight.fall, weight.velocity = state

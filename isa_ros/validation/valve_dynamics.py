@@ -15,6 +15,7 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import PERIOD_NS, RATE_HZ, setpoints
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import MPA
 from isa_ros.paper.printed import cell, statement
@@ -100,7 +101,7 @@ def linearised(model: str) -> tuple[np.ndarray, np.ndarray]:
     Currents are the amplifier's, A; the spool in m.
     """
     plant = plant_of(model)
-    rows = np.zeros(2, PLANT_STATE).view(np.recarray)
+    rows = rows_of(2, PLANT_STATE)
     y, rates = rows[0], rows[1]
 
     def rate(state: np.ndarray, drive: float) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.parameter import Parameters
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant.service_lines import rest_lines
@@ -43,7 +44,7 @@ class ClosedCylinder:
         for path, value in values.items():
             sheet = override(sheet, f'plant.{path.replace("__", ".")}', value)
         self.constants = actuator_record(sheet, 0)
-        self.plant = plant = self.constants.view(np.recarray)[0].plant
+        self.plant = plant = row_record(self.constants).plant
         plant.valve.per_root_drop = plant.valve.c_tare = 0.0
         plant.chambers.c_li, plant.relief.p_open = 0.0, math.inf
         if not refill:
@@ -54,7 +55,7 @@ class ClosedCylinder:
         self.port = np.zeros(1, LOAD_PORT)
         self.integrated = integrated(
             self.port[0], np.zeros(1, SUPPLY_PORT)[0], self.constants[0])
-        self.state = self.integrated.continuous.view(np.recarray)[0]
+        self.state = row_record(self.integrated.continuous)
         self.own = self.state.plant
         self.own.mechanics.position = self.state.load.position = place
         self.own.chambers.p_a = self.own.chambers.p_b = pressure

@@ -4,6 +4,7 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.timing import Timing
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
 import numpy as np
 from tests.sheets import actuator_sheet, override, smart_actuator, TICK
@@ -32,4 +33,4 @@ def clear(actuator: SmartActuator) -> None:
 
 
 def own(actuator: SmartActuator) -> np.record:
-    return actuator.memory.reu.view(np.recarray)[0].protection
+    return row_record(actuator.memory.reu).protection

@@ -4,6 +4,7 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.core.conditions import BITS, conditions
+from isa_ros.core.record import row_record
 from isa_ros.reu.reactions import protect
 import numpy as np
 import pytest
@@ -15,13 +16,13 @@ class Shadow:
     """A second protection of a moving actuator, with readings of other sensors."""
 
     def __init__(self, actuator: SmartActuator) -> None:
-        self.state = actuator.memory.reu.copy().view(np.recarray)[0]
-        self.constants = actuator.memory.constants.view(np.recarray)[0].reu.protection
+        self.state = row_record(actuator.memory.reu.copy())
+        self.constants = row_record(actuator.memory.constants).reu.protection
         self.warned = self.tripped = 0
 
     def convert(self, actuator: SmartActuator, **added: float) -> None:
         """Take the conversion of the last tick, with something added to its readings."""
-        reu = actuator.memory.reu.view(np.recarray)[0]
+        reu = row_record(actuator.memory.reu)
         self.state.measured, self.state.speed = reu.measured, reu.speed
         self.state.current_reference = reu.current_reference
         for field, error in added.items():

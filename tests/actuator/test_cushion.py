@@ -5,6 +5,7 @@ import math
 from typing import Any
 
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant.cushion import divide
@@ -192,9 +193,9 @@ def test_an_actuator_that_starts_in_a_cushion_is_divided_from_the_start():
 def test_in_a_cushion_no_force_contradicts_the_pressures(place, is_trusted):
     """R14, and the error of the force: the spear takes a part that no sensor measures."""
     own = actuator_record(actuator_sheet('cylinder', 'default', 'cushioned'), 0)
-    evidence = own.view(np.recarray)[0].reu.protection.evidence
-    state = np.zeros(1, EVIDENCE_STATE).view(np.recarray)[0]
-    measured = np.zeros(1, MEASURED).view(np.recarray)[0]
+    evidence = row_record(own).reu.protection.evidence
+    state = row_record(np.zeros(1, EVIDENCE_STATE))
+    measured = row_record(np.zeros(1, MEASURED))
     measured.position, measured.pressure_a = place, 10e6
     found = unexplained_force(measured, 0.0, 0.2, evidence, state)
     assert (found > 1e3) == is_trusted and (found == 0.0) != is_trusted

@@ -5,6 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.actuator import inbox
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, IMPEDANCE, SPOOL
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.cascade import REU_STATE
@@ -24,12 +25,12 @@ def row(*values: float) -> np.record:
     rows = np.zeros(1, COMMAND)
     if values:
         rows[0] = (*values, *[0] * (len(COMMAND.names or ()) - len(values)))
-    return rows.view(np.recarray)[0]
+    return row_record(rows)
 
 
 def reu_at(position: float, state: int = ENABLED, mode: int = IMPEDANCE) -> np.record:
     """Return a `REU_STATE` that measures a position and has a setpoint in force."""
-    reu = np.zeros(1, REU_STATE).view(np.recarray)[0]
+    reu = row_record(np.zeros(1, REU_STATE))
     reu.measured.position = position
     setpoint = reu.setpoint
     setpoint.position, setpoint.velocity, setpoint.effort = 0.04, 0.5, 20.0

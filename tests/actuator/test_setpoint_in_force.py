@@ -1,7 +1,8 @@
 """The setpoint of an actuator as it will be at the next tick."""
 
-from isa_ros.actuator.rows import memory_of, row_record
+from isa_ros.actuator.rows import memory_of
 from isa_ros.actuator.setpoint_in_force import setpoint_after
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT
 import numpy as np
 import pytest

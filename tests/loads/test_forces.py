@@ -5,6 +5,7 @@ from functools import cache
 
 from hypothesis import given, strategies as st
 from isa_ros.core.contact import normal_force
+from isa_ros.core.record import row_record
 from isa_ros.errors import ParameterError
 from isa_ros.loads import forces as own
 from isa_ros.loads.forces import LOAD_STATE
@@ -22,7 +23,7 @@ speeds = st.floats(-3.0, 3.0)
 @cache
 def row(model, load):
     """Return the `OWN_LOAD` record of one of a model's loads."""
-    return own_record(own_load(model, load)).view(np.recarray)[0]
+    return row_record(own_record(own_load(model, load)))
 
 
 def state(position=0.0, velocity=0.0):

@@ -3,6 +3,7 @@
 import math
 
 from hypothesis import given, strategies as st
+from isa_ros.core.record import row_record
 from isa_ros.plant import coil
 from isa_ros.plant.plant import plant_record
 import numpy as np
@@ -15,7 +16,7 @@ EXPLICIT = plant_record(actuator_sheet('smart_manifold', 'table_4', 'explicit').
 
 def coil_state(*values: float) -> np.record:
     """Return a `COIL_STATE` row."""
-    return np.array([values or (0.0, 0.0, 0.0)], coil.COIL_STATE).view(np.recarray)[0]
+    return row_record(np.array([values or (0.0, 0.0, 0.0)], coil.COIL_STATE))
 
 
 def wired(coils: str) -> np.record:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 import math
 
+from isa_ros.core.record import row_record
 from isa_ros.errors import ParameterError
 from isa_ros.plant.counterbalance import counterbalance_excess, counterbalance_record
 from isa_ros.plant.linearised import LoadSide
@@ -74,9 +75,9 @@ def test_a_poppet_is_not_stuck_in_two_places(sheet):
 def test_a_hose_at_rest_is_no_higher_than_its_chamber_behind_the_valve(force):
     """A weight that pulls has A below half of the supply, one that pushes B: no oil enters."""
     sheet = actuator_sheet('cylinder').plant
-    own = plant_record(replace(
-        sheet, hoses=HOSES, holding_a=COUNTERBALANCE, holding_b=CHECK)).view(np.recarray)[0]
-    at = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
+    own = row_record(plant_record(replace(
+        sheet, hoses=HOSES, holding_a=COUNTERBALANCE, holding_b=CHECK)))
+    at = row_record(np.zeros(1, PLANT_STATE))
     at.mechanics.position = 0.1
     rest_oil(own, 16e6, 0.0, force, at)
     lowest = np.minimum((at.chambers.p_a, at.chambers.p_b), null_pressures(own, 16e6, 0.0))
@@ -135,7 +136,7 @@ def test_a_load_holding_valve_without_hoses_is_refused(parts, message):
 def test_a_poppet_that_swings_on_its_oil_within_a_step_is_refused_and_its_bound_is_accepted():
     """The least lag is half a radian a step at the relief pressure; its bound is its own."""
     quick = replace(CHECK, lag_ms=0.1, rated_lpm=200.0)
-    plant = plant_record(with_lines(hoses=HOSES, holding_b=quick)).view(np.recarray)[0]
+    plant = row_record(plant_record(with_lines(hoses=HOSES, holding_b=quick)))
     least = least_lag(plant.holding_b, plant.chambers.beta / plant.chambers.dead_volume,
                       plant.hoses.beta / (plant.hoses.volume * (
                           1.0 + plant.hoses.beta * plant.hoses.per_wall)), plant.relief.p_open)

@@ -6,6 +6,7 @@ import math
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import COMMAND, HAS_QUICK_STOP, LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
@@ -47,10 +48,10 @@ def test_the_losses_are_the_efficiencies_of_both_points(k):
 def test_a_steady_shaft_loses_what_its_sheet_says(speed):
     """M6 to M8 of the kernels: the load turns it at a speed, the valve is open."""
     constants = actuator_record(SHEET, 0)
-    plant = constants.view(np.recarray)[0].plant
+    plant = row_record(constants).plant
     port = np.zeros(1, LOAD_PORT)
     integration = integrated(port[0], np.zeros(1, SUPPLY_PORT)[0], constants[0])
-    state = integration.continuous.view(np.recarray)[0]
+    state = row_record(integration.continuous)
     port['supply_pressure'], port['v0'] = 20e6, speed
     state.supply.pressure = 20e6
     state.load.velocity = state.plant.mechanics.velocity = speed
@@ -77,7 +78,7 @@ def test_a_steady_shaft_loses_what_its_sheet_says(speed):
 
 def test_its_chambers_neither_grow_nor_shrink():
     """M6: of any angle; what it takes from A at a density it leaves in no other volume."""
-    oil = plant_record(SHEET.plant).view(np.recarray)[0].chambers
+    oil = row_record(plant_record(SHEET.plant)).chambers
     for angle in (-1e4, 0.0, 3.0, 1e4):
         assert volumes(angle, oil) == pytest.approx((40e-6, 40e-6), rel=1e-12, abs=0.0)
     assert lack_rates(1e-4, -2e-4, 0.01, 0.02, 50.0, oil) == pytest.approx(

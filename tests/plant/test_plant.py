@@ -5,6 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant import chambers, servo_valve
@@ -27,11 +28,11 @@ class Body:
         self.port = np.zeros(1, LOAD_PORT)
         self.own = kernels.integrated(
             self.port[0], np.zeros(1, SUPPLY_PORT)[0], self.constants[0])
-        self.row = self.own.continuous.view(np.recarray)[0]
+        self.row = row_record(self.own.continuous)
         self.port['supply_pressure'] = self.row.supply.pressure = SUPPLY
         self.current = current
         self.row.plant.mechanics.position = self.row.load.position = position
-        plant = self.constants.view(np.recarray)[0].plant
+        plant = row_record(self.constants).plant
         self.row.plant.chambers.p_a, self.row.plant.chambers.p_b = rest_pressures(
             plant, SUPPLY, 0.0, 0.0)
 
@@ -70,7 +71,7 @@ def compression_energy(volume: float, start: float, p_start: float, beta: float)
 def test_trapped_oil_conserves_energy(model):
     """C2, C3, M2, M4: a shut valve and no friction keep kinetic plus stored energy."""
     body = Body(lossless(model), 0.4 * plant_row(model).chambers.stroke)
-    plant, oil = body.constants.view(np.recarray)[0].plant, plant_row(model).chambers
+    plant, oil = row_record(body.constants).plant, plant_row(model).chambers
     load_inertia = 100.0 * plant.mechanics.inertia
     body.port['inverse_mass'] = 1.0 / load_inertia
     start = chambers.volumes(body.row.plant.mechanics.position, oil)
@@ -98,7 +99,7 @@ def rates_at(
         plant: np.record, supply: float = SUPPLY, **chamber: float
         ) -> tuple[np.record, tuple[float, float, float]]:
     """Return the rates of a plant at rest at mid stroke, and its sensor force and flows."""
-    y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
+    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
     y.mechanics.position = x = 0.5 * plant.chambers.stroke
     for name, value in chamber.items():
         setattr(y.chambers, name, value)
@@ -148,7 +149,7 @@ def test_the_valve_feels_the_resonance_of_its_coil():
     """V11, V13: the spool is driven by the current with its mode, on the series scale."""
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
     plant = plant_record(sheet.plant)[0]
-    y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
+    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
     y.coil.mode = 1e-3
     plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, False, rates, False, no_powers())
     series = plant.coil.mode_share * 1e-3 / 2.0
@@ -191,7 +192,7 @@ def test_runge_kutta_converges_with_fourth_order(model):
 def test_oil_spring_sets_the_natural_frequency(model):
     """C4: against a fixed sensor the rotor swings at sqrt((k_oil + K_s)/I)."""
     body = Body(lossless(model), 0.5 * plant_row(model).chambers.stroke)
-    plant = body.constants.view(np.recarray)[0].plant
+    plant = row_record(body.constants).plant
     moving = body.row.plant.mechanics
     rest = moving.position
     stiffness = chambers.oil_stiffness(rest, plant.chambers) + plant.mechanics.k_s

@@ -5,6 +5,7 @@ import math
 
 from isa_ros.actuator.ratings import forcing_areas, ratings_of
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
+from isa_ros.core.record import row_record
 from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import return_spring
@@ -42,7 +43,7 @@ def test_the_spring_pushes_in_with_its_preload_and_rate():
 
 @pytest.mark.parametrize(('open_to', 'back', 'vent'), [('tank', 3e5, 3e5), ('breather', 3e5, 0.0)])
 def test_chamber_b_has_the_pressure_of_where_it_is_open(open_to, back, vent):
-    own = plant_record(single(open_to=open_to).plant).view(np.recarray)[0]
+    own = row_record(plant_record(single(open_to=open_to).plant))
     assert return_spring.vent_pressure(back, own.spring) == vent
     force = 3000.0
     p_a, p_b = rest_pressures(own, 14e6, back, force)
@@ -55,8 +56,8 @@ def test_chamber_b_has_the_pressure_of_where_it_is_open(open_to, back, vent):
 @pytest.mark.parametrize('position', [0.02, 0.1, 0.18])
 def test_at_rest_the_oil_holds_load_and_spring_where_it_starts(position):
     """M5: A_A P_A = F + F_0 + k s + A_B P_B, so that nothing moves; hoses are as their chamber."""
-    own = plant_record(override(single().plant, 'hoses', HOSES)).view(np.recarray)[0]
-    at = np.zeros(1, PLANT_STATE).view(np.recarray)[0]
+    own = row_record(plant_record(override(single().plant, 'hoses', HOSES)))
+    at = row_record(np.zeros(1, PLANT_STATE))
     at.mechanics.position = position
     rest_oil(own, 14e6, 3e5, 3000.0, at)
     pushed = at.chambers.p_a * AREA - at.chambers.p_b * ROD_SIDE
@@ -77,7 +78,7 @@ def test_what_an_open_chamber_gains_leaves_it_and_its_pressure_follows():
 
 
 def test_the_lands_of_b_are_plugged_and_its_oil_is_no_spring():
-    own = plant_record(single().plant).view(np.recarray)[0]
+    own = row_record(plant_record(single().plant))
     assert (own.valve.f_pb, own.valve.f_bt) == (0.0, 0.0)
     assert min(own.valve.f_pa, own.valve.f_at) > 0.0
     volume = float(own.chambers.dead_volume) + AREA * 0.05
@@ -196,7 +197,7 @@ def test_a_double_acting_piston_of_its_size_is_rated_with_two_lands():
 
 def test_the_reu_knows_the_sound_spring():
     """R14 takes its force into account; a broken one is told by it."""
-    evidence = actuator_record(single(broken=1.0), 0).view(np.recarray)[0].reu.protection.evidence
+    evidence = row_record(actuator_record(single(broken=1.0), 0)).reu.protection.evidence
     assert (evidence.preload, evidence.stiffness) == (800.0, 6e3)
 
 

@@ -3,6 +3,7 @@
 import math
 
 from hypothesis import given, strategies as st
+from isa_ros.core.record import row_record
 from isa_ros.plant import coil, spool
 from isa_ros.plant.plant import plant_record
 import numpy as np
@@ -17,7 +18,7 @@ EXPLICIT = plant_record(actuator_sheet('isa_v5', 'table_4', 'explicit').plant)[0
 
 def valve_state(*values: float) -> np.record:
     """Return a `SPOOL_STATE` row."""
-    return np.array([values or (0.0, 0.0, 0.0)], spool.SPOOL_STATE).view(np.recarray)[0]
+    return row_record(np.array([values or (0.0, 0.0, 0.0)], spool.SPOOL_STATE))
 
 
 def linear(plant: np.record, with_current_pole: bool) -> tuple[np.ndarray, np.ndarray]:

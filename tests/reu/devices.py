@@ -2,6 +2,7 @@
 
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.device import IMPEDANCE
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_MODE
 from isa_ros.reu.cascade import REU_STATE
 import numpy as np
@@ -18,14 +19,14 @@ def constants(model='isa_v5', **values):
     sheet = actuator_sheet(model)
     for name, value in values.items():
         sheet = override(sheet, f'reu.device.{name}', value)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     reu.protection.reaction[:] = DISABLES
     return reu
 
 
 def starting(auto_enable=1):
     """Return the state at t = 0."""
-    state = np.zeros(1, REU_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, REU_STATE))
     own = state.status
     own.auto_enable = own.requested_enable = auto_enable
     own.mode = own.acting = own.requested_mode = IMPEDANCE

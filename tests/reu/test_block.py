@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from hypothesis import given, strategies as st
+from isa_ros.core.record import row_record
 from isa_ros.plant import servo_valve
 from isa_ros.reu import block
 from isa_ros.reu.compensation import dual_gain_compensation, Linear
@@ -27,7 +28,7 @@ LOOP = record()
 
 def state() -> np.record:
     """Return a block at rest."""
-    return np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    return row_record(np.zeros(1, block.BLOCK_STATE))
 
 
 def step(

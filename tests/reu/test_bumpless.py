@@ -5,10 +5,10 @@ from dataclasses import replace
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.device import CURRENT, FORCE, SPOOL
 from isa_ros.core.parameter import replaced
+from isa_ros.core.record import row_record
 from isa_ros.reu.block import block_step
 from isa_ros.reu.bumpless import back_calculate, start_setpoint, take_over
 from isa_ros.reu.wiring import HELD
-import numpy as np
 import pytest
 from tests.reu.states import enabled_state
 from tests.sheets import actuator_sheet
@@ -24,7 +24,7 @@ def test_a_block_with_feedback_damping_takes_over_with_its_filter_at_the_measure
     """
     sheet = actuator_sheet('isa_v5')
     force = replace(sheet.reu.force, kf=2e-3, measured_filter_hz=100.0)
-    reu = actuator_record(replaced(sheet, 'reu.force', force), 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(replaced(sheet, 'reu.force', force), 0)).reu
     block, state = reu.force, enabled_state(reu).force
     state.measured, state.measured_rate = -1e3, 7e4     # of an hour ago
     back_calculate(OUTPUT, MEASURED, 0.0, PLACE, reu.stroke, block, state)
@@ -36,7 +36,7 @@ def test_a_block_with_feedback_damping_takes_over_with_its_filter_at_the_measure
 
 def test_the_spool_of_a_direct_valve_begins_where_its_current_holds_it() -> None:
     """K_spool times the series current, from which the cascade makes the same current again."""
-    reu = actuator_record(actuator_sheet('isa_v5'), 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(actuator_sheet('isa_v5'), 0)).reu
     assert reu.spool_kind == HELD
     state = enabled_state(reu, CURRENT)
     state.current_reference = 4e-3
@@ -48,7 +48,7 @@ def test_the_spool_of_a_direct_valve_begins_where_its_current_holds_it() -> None
 
 @pytest.mark.parametrize('mode', [CURRENT, FORCE])
 def test_a_mode_that_begins_without_a_setpoint_has_none_of_the_velocity_before(mode: int) -> None:
-    reu = actuator_record(actuator_sheet('isa_v5'), 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(actuator_sheet('isa_v5'), 0)).reu
     state = enabled_state(reu)
     state.measured.position, state.setpoint.velocity, state.setpoint.effort = 0.04, 0.3, 900.0
     start_setpoint(mode, 1.5, state)

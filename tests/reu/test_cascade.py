@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
+from isa_ros.core.record import row_record
 from isa_ros.reu import cascade
 from isa_ros.reu.compensation import Linear
 from isa_ros.reu.wiring import Off
@@ -16,7 +17,7 @@ def loops(
         model: str, offset_steps: int = 0, *variants: str) -> tuple[np.record, np.record]:
     """Return (constants, state) of an enabled cascade."""
     sheet = actuator_sheet(model, 'default', *variants)
-    reu = actuator_record(sheet, offset_steps).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, offset_steps)).reu
     return reu, enabled_state(reu)
 
 
@@ -80,7 +81,7 @@ def test_without_position_block_the_effort_goes_to_the_force_block_at_its_rate()
     sheet = actuator_sheet('smart_manifold')
     sheet = replace(sheet, reu=replace(sheet.reu, position=Off()))
     refuse_wiring(sheet)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     state.setpoint.effort = 10.0
     cascade.cascade_step(5, reu, state)
@@ -93,7 +94,7 @@ def test_pure_position_control_feeds_the_setpoint_s_velocity_forward():
     """R3: K_v of the position block is on the reference's speed, not on the measured one."""
     sheet = override(
         actuator_sheet('smart_manifold', 'default', 'position_control'), 'reu.position.kv', 1e-3)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     state.setpoint.velocity = 0.5
     cascade.cascade_step(0, reu, state)
@@ -116,7 +117,7 @@ def test_a_pressure_block_controls_the_difference():
         sheet.reu.force, kp=1e-10, ki=0.0, kv=0.0))
     sheet = replace(sheet, reu=reu_sheet)
     refuse_wiring(sheet)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     state.setpoint.effort = 5e6
     state.measured.pressure_a, state.measured.pressure_b = 9e6, 7e6
@@ -142,7 +143,7 @@ def test_a_disabled_position_or_pressure_block_forgets_its_integral():
     sheet = replace(actuator_sheet('smart_manifold'), reu=reu_sheet)
     sheet = override(sheet, 'reu.position.rate_hz', 1000.0)
     refuse_wiring(sheet)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     state.setpoint.position = 0.1
     for instant in (0, 50, 100):
@@ -160,7 +161,7 @@ def test_spool_and_current_blocks_feed_back_what_is_measured():
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
     sheet = replace(sheet, reu=replace(sheet.reu, position=Off(), force=Off()))
     refuse_wiring(sheet)
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     state.setpoint.effort = 5e-5
     state.measured.spool = state.spool.measured = 5e-5

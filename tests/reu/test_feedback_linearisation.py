@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from hypothesis import given, strategies as st
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import MEASURED
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_record
@@ -23,7 +24,7 @@ def known(model: str, return_mpa: float = 0.0) -> tuple[np.record, np.record]:
         'plant.valve.null_leakage_lpm', 0.0)
     sheet = override(sheet, 'reu.force.return_pressure_mpa', return_mpa)
     sheet = override(sheet, 'plant.valve.orifice_smoothing_kpa', 1e-6)
-    record = actuator_record(sheet, 0).view(np.recarray)[0]
+    record = row_record(actuator_record(sheet, 0))
     return record.reu.linearisation, plant_record(sheet.plant)[0]
 
 
@@ -32,7 +33,7 @@ KNOWN = {model: known(model) for model in MODELS}
 
 def measured(**values: float) -> np.record:
     """Return a `MEASURED` row."""
-    row = np.zeros(1, MEASURED).view(np.recarray)[0]
+    row = row_record(np.zeros(1, MEASURED))
     for name, value in values.items():
         setattr(row, name, value)
     return row
@@ -57,7 +58,7 @@ def test_opening_inverts_the_points_of_a_data_sheet(flow):
     points = PointsFlow(current_ma=(0.0, 2.0, 6.0, 10.0), flow_lpm=(0.0, 1.0, 12.0, 20.0))
     valve_sheet = replace(sheet.plant.valve, flow=points)
     sheet = replace(sheet, plant=replace(sheet.plant, valve=valve_sheet))
-    law = actuator_record(sheet, 0).view(np.recarray)[0].reu.linearisation
+    law = row_record(actuator_record(sheet, 0)).reu.linearisation
     valve = plant_record(sheet.plant)[0].valve
     u = fl.opening_of(flow, law.model)
     assert servo_valve.flow_curve(u, valve) == pytest.approx(
@@ -91,8 +92,8 @@ def test_the_integral_stands_still_at_the_stop():
     """R5 holds for this block too."""
     sheet = actuator_sheet('isa_v5', 'default', 'feedback_linearisation')
     sheet = replace(sheet, reu=replace(sheet.reu, force=replace(sheet.reu.force, ki_per_s2=1e4)))
-    law = actuator_record(sheet, 0).view(np.recarray)[0].reu.linearisation
-    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    law = row_record(actuator_record(sheet, 0)).reu.linearisation
+    state = row_record(np.zeros(1, block.BLOCK_STATE))
     row = measured(position=0.05, pressure_a=8e6, pressure_b=11e6)
     fl.linearising_step(1e5, row, 0.0, law, state)
     assert state.output == law.limit
@@ -129,7 +130,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
     law, plant = KNOWN[model]
     per_spool = 1.0 if model == 'isa_v5' else 1.0 / plant.valve.k_spool
     row = measured(position=0.5 * plant.chambers.stroke, pressure_a=9e6, pressure_b=9e6)
-    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, block.BLOCK_STATE))
     fl.linearising_step(1.0, row, 0.0, law, state)
     opening = fl.opening_for(law.bandwidth, row, 0.0, law)
     assert state.output == pytest.approx(per_spool * opening, rel=1e-12, abs=0.0)
@@ -139,7 +140,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
 def test_a_rising_force_damps_and_slows_the_load(model):
     """R8, R12: F' = -w K_f dF/dt, and the load moves by dF/dt / K_s less than the piston."""
     law, plant = KNOWN[model]
-    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, block.BLOCK_STATE))
     rate = 1e-3 * chambers.oil_stiffness(0.5 * plant.chambers.stroke, plant.chambers)
     for n in range(1, 200):  # 40 ms: the 100 Hz low-pass of the speed has settled to 1e-11
         force = rate * n * law.period
@@ -159,7 +160,7 @@ def test_compiled_block_equals_its_python_source(reference, force, velocity):
     for law, plant in KNOWN.values():
         row = measured(position=0.4 * plant.chambers.stroke, force=force, pressure_a=9e6,
                        pressure_b=7e6)
-        compiled, python = (np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0] for _ in 'ab')
+        compiled, python = (row_record(np.zeros(1, block.BLOCK_STATE)) for _ in 'ab')
         fl.linearising_step(reference, row, velocity, law, compiled)
         fl.linearising_step.py_func(reference, row, velocity, law, python)
         assert compiled.tobytes() == python.tobytes()

@@ -2,6 +2,7 @@
 
 import math
 
+from isa_ros.core.record import row_record
 from isa_ros.reu.filters import (
     low_pass, low_pass_coefficient, speed_record, SPEED_STATE, speed_step)
 import numpy as np
@@ -21,7 +22,7 @@ def test_step_response_is_the_sampled_exponential():
 def test_the_speed_estimate_follows_a_ramp_through_its_filter():
     """R1: a ramp's difference through 100 Hz at 1 kHz settles exponentially to its slope."""
     row = speed_record(actuator_sheet('isa_v5').reu.speed)
-    state = np.zeros(1, SPEED_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, SPEED_STATE))
     for n in range(1, 30):
         speed_step(0.3e-3 * n, row, state)
         expected = 0.3 * (1.0 - math.exp(-2.0 * math.pi * 0.1 * n))
@@ -31,7 +32,7 @@ def test_the_speed_estimate_follows_a_ramp_through_its_filter():
 def test_at_rest_the_estimate_becomes_zero():
     """Not the smallest double, at which a decay ends by rounding; above 1e-30 nothing is cut."""
     row = speed_record(actuator_sheet('isa_v5').reu.speed)
-    state = np.zeros(1, SPEED_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, SPEED_STATE))
     state.velocity = before = 1.0
     share = math.exp(-2.0 * math.pi * 0.1)
     for _ in range(200):

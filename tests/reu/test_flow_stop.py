@@ -3,6 +3,7 @@
 from collections.abc import Callable
 import math
 
+from isa_ros.core.record import row_record
 from isa_ros.reu import flow_stop as own
 import numpy as np
 import pytest
@@ -15,13 +16,13 @@ SUPPLY = 20.7e6
 def setup() -> np.recarray:
     """Return the `FLOW_STOP` record of an ISA v5; tests change copies of it."""
     rules = memory_of(simulation_of(rig()), 'ram').constants['reu']['rules']
-    return rules['flow'].copy().view(np.recarray)[0]
+    return row_record(rules['flow'].copy())
 
 
 def begun(setup: np.recarray, position: float = 0.05, velocity: float = 0.0,
           force: float = 0.0) -> np.recarray:
     """Return the state of a stop that has begun."""
-    state = np.zeros(1, own.FLOW_STOP_STATE).view(np.recarray)[0]
+    state = row_record(np.zeros(1, own.FLOW_STOP_STATE))
     own.begin_flow_stop(position, velocity, force, setup, state)
     return state
 

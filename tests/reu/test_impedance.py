@@ -1,5 +1,6 @@
 """The position block as an impedance."""
 
+from isa_ros.core.record import row_record
 from isa_ros.reu import impedance
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ LIMITS = impedance.impedance_record(actuator_sheet('isa_v5').reu.position)
 
 def reference(velocity: float = 0.0, measured: float = 0.0, **values: float) -> float:
     """Return the force reference of a setpoint at position 0 and a measured speed."""
-    setpoint = np.zeros(1, impedance.SETPOINT).view(np.recarray)[0]
+    setpoint = row_record(np.zeros(1, impedance.SETPOINT))
     for name, value in values.items():
         setattr(setpoint, name, value)
     setpoint.velocity = velocity

@@ -2,6 +2,7 @@
 
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, FAULT, FAULT_REACTION, QUICK_STOP
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_QUICK_STOP
 from isa_ros.reu import device
 import numpy as np
@@ -108,7 +109,7 @@ def test_a_reaction_that_stops_ends_in_fault_also_where_a_quick_stop_holds():
 def test_without_a_position_block_a_quick_stop_ramps_the_flow_too():
     """The reference of the valve is that of the flow: at half the speed less than at all of it."""
     sheet = actuator_sheet('isa_v5', 'default', 'valve_amplifier')
-    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = row_record(actuator_record(sheet, 0)).reu
     state = enabled_state(reu)
     assert state.status.mode == CURRENT
     state.supply_pressure, state.measured.position = 20.7e6, 0.05

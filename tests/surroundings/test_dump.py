@@ -5,6 +5,7 @@ import math
 
 from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.parameter import defaults
+from isa_ros.core.record import row_record
 from isa_ros.surroundings import supply
 from isa_ros.surroundings.accumulator import supply_rates
 from isa_ros.surroundings.dump import dumped, LagDump, ValveDump
@@ -124,8 +125,8 @@ def test_rates_are_those_of_python():
 
 def test_a_stiff_line_falls_no_faster_than_a_step_can_follow():
     """C14: the slope of the flow over the line's capacitance, 1.6 of a step; below it V5's own."""
-    row = supply.supply_record(
-        opened(replace(SHEET, dump=VALVE))).view(np.recarray)[0].dump_valve
+    row = row_record(supply.supply_record(
+        opened(replace(SHEET, dump=VALVE)))).dump_valve
     for elastance in (1e11, 1e13, 1e15):
         slope = (dumped(1.0, 1.0, elastance, row) - dumped(-1.0, 1.0, elastance, row)) / 2.0
         fastest = 1.6 / SUPPLY_STEP

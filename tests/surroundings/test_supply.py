@@ -4,6 +4,7 @@ from dataclasses import replace
 import math
 
 from isa_ros.core.constants import ATMOSPHERE
+from isa_ros.core.record import row_record
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import return_line, supply
@@ -141,7 +142,7 @@ def test_without_its_gas_only_the_line_can_be_enlarged():
 def test_compiled_rates_equal_their_python_source():
     """The logarithm and exponential included."""
     record = supply.supply_record(SHEET)[0].tolist()
-    row = np.array([record], SUPPLY).view(np.recarray)[0]
+    row = row_record(np.array([record], SUPPLY))
     for pressure in np.linspace(1e6, 23e6, 200):
         assert supply_rates(pressure, 1e-4, 5e-5, 0.0, row) == \
             supply_rates.py_func(pressure, 1e-4, 5e-5, 0.0, row)

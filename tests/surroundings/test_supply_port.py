@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.core.record import rows_of
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import SUPPLY_PORT, SUPPLY_REPLY
 from isa_ros.core.units import LPM
 from isa_ros.errors import ConfigError, ParameterError
@@ -53,7 +53,7 @@ def test_a_shut_valve_stands_for_all(conductances: list[float]) -> None:
 def node_of(plant: Supply) -> FedNode:
     """Return the node of a supply."""
     node: FedNode = accumulator_node(
-        plant.records.supply.view(np.recarray)[0], plant.state.view(np.recarray)[0])
+        row_record(plant.records.supply), row_record(plant.state))
     return node
 
 

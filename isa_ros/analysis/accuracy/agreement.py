@@ -19,6 +19,7 @@ from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.text.sections import Place
 from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
+from isa_ros.core.record import row_record
 from isa_ros.core.signals import SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record
@@ -91,10 +92,10 @@ class OpenLoopRig:
         self._constants['load'] = own_record(fixture)
         self._port = local_port(fixture, middle)
         self._port['supply_pressure'], self._feed = SUPPLY, np.zeros(1, SUPPLY_PORT)
-        self._plant = self._constants.view(np.recarray)[0].plant
+        self._plant = row_record(self._constants).plant
         self._own = kernels.integrated(self._port[0], self._feed[0], self._constants[0])
         _, _, _, self._bodies, self._rates, self._y, self._k = self._own
-        body = self._bodies.view(np.recarray)[0]
+        body = row_record(self._bodies)
         body.supply.pressure = SUPPLY
         body.plant.mechanics.position = body.load.position = middle
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
@@ -112,7 +113,7 @@ class OpenLoopRig:
 
     def adaptive(self, piece: Piece, scale: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the same states by scipy; ``scale`` is the largest value of each state."""
-        own, oil = self._bodies.view(np.recarray)[0].plant, self._plant.chambers
+        own, oil = row_record(self._bodies).plant, self._plant.chambers
         self._y[0] = scale
         own.chambers.cavity_a, own.chambers.cavity_b = np.array(
             (own.chambers.p_a, own.chambers.p_b)) / elastances(0.5 * oil.stroke, oil)

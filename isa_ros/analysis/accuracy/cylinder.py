@@ -15,10 +15,12 @@ steps of order four, in less time.
 import math
 
 from isa_ros.core.kernel import called_kernel, kernel
+from isa_ros.core.record import rows_of
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.plant import chambers, servo_valve, spool, valve_record
 from isa_ros.plant.drives import Cylinder
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
 STATES = ('x', 'v', 'p_a', 'p_b', 'u', 'u_rate')  # m, m/s, Pa, Pa, 1, 1/s
@@ -38,7 +40,7 @@ A_2, A_3, A_4, A_5, A_6, A_7, A_8, A_9, A_10, A_11, A_12, B = (
     tuple(float(a) for a in row if a != 0.0) for row in (*DOP853.A[1:STAGES], DOP853.B))
 
 
-def cylinder_record() -> np.recarray:
+def cylinder_record() -> NDArray[np.void]:
     """
     Return the `CYLINDER` record of the case, shape (1,).
 
@@ -46,7 +48,7 @@ def cylinder_record() -> np.recarray:
     3.5 MPa and u = 1, equal lands, no valve leakage, orifices without smoothing (delta = 0; no
     pressure drop comes near zero).
     """
-    record = np.zeros(1, CYLINDER).view(np.recarray)
+    record = rows_of(1, CYLINDER)
     case = record[0]
     case.chambers = chambers.chambers_record(
         Cylinder(bore_mm=21.5, rod_mm=12.0, cap_rod_mm=0.0, stroke_mm=100.0,

@@ -5,7 +5,6 @@ Errors are reported with the file and key at which a value was written, be it a 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from functools import cache
 import re
 from typing import Any, get_args, get_type_hints, TypeVar
@@ -13,6 +12,7 @@ from typing import Any, get_args, get_type_hints, TypeVar
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import KIND_KEYS, Place, Section, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.frozen import fields_of
 from isa_ros.core.parameter import check, Parameters, set_by_name
 from isa_ros.core.suggest import alternatives, listed
 from isa_ros.core.units import after, of_coordinate
@@ -41,13 +41,13 @@ def build(
 
     """
     hints = _hints(cls)
-    refuse_unknown_entries(section, [f.name for f in fields(cls)], place)
-    lacking = [f.name for f in fields(cls)
+    refuse_unknown_entries(section, [f.name for f in fields_of(cls)], place)
+    lacking = [f.name for f in fields_of(cls)
                if f.name not in section and 'absent' not in f.metadata]
     if lacking:
         raise ConfigError(place.has(f'lacks {listed(lacking)}'))
     values: dict[str, Any] = {}
-    for f in fields(cls):
+    for f in fields_of(cls):
         if f.name not in section:
             values[f.name] = f.metadata['absent']
             continue
@@ -173,7 +173,7 @@ def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
     if hint is not None and not isinstance(hint, type):
         tree['kind'] = kind_of(parameters, hint)
     hints = _hints(type(parameters))
-    for f in fields(parameters):
+    for f in fields_of(type(parameters)):
         value = getattr(parameters, f.name)
         is_set = isinstance(value, Parameters)
         tree[f.name] = (as_tree(value, hints[f.name]) if is_set

@@ -19,6 +19,7 @@ MAX_BYTES = 1 << 20   # of one file; the largest shipped one has 8 kB
 MAX_NODES = 20_000    # of one file
 MAX_DEPTH = 16        # of nested sections
 MAX_DIGITS = 300      # of a whole number: a double holds 308
+_SHORT = re.compile('[ -~]{0,40}')
 _TAB = 'begins with a tab, must be indented by spaces'
 
 
@@ -84,14 +85,21 @@ if yaml.__with_libyaml__:
     _Loader = _LibraryLoader
 
 
-class _Dumper(yaml.SafeDumper):
+class _PythonDumper(yaml.SafeDumper):
     """Quotes every text that YAML 1.1 or 1.2 would read as another type."""
 
 
-for _scalar in _SCALARS:
-    _PythonLoader.add_implicit_resolver(*_scalar)
-    _Loader.add_implicit_resolver(*_scalar)
-    _Dumper.add_implicit_resolver(*_scalar)
+_Dumper: Any = _PythonDumper
+if yaml.__with_libyaml__:
+    class _LibraryDumper(yaml.CSafeDumper):
+        """Five times as fast: the same bytes for plain texts; others it may cut elsewhere."""
+
+    _Dumper = _LibraryDumper
+
+
+for _class in {_PythonLoader, _Loader, _PythonDumper, _Dumper}:
+    for _scalar in _SCALARS:
+        _class.add_implicit_resolver(*_scalar)
 
 
 def _plain(node: yaml.Node, loader: Any, name: str) -> Any:
@@ -177,6 +185,16 @@ def read(path: Path) -> Tree:
 def dump(tree: Mapping[str, Any]) -> str:
     """Return the YAML text of a tree in its own order; floats keep every bit."""
     text: str = yaml.dump(
-        dict(tree), Dumper=_Dumper, sort_keys=False, default_flow_style=None, width=99,
-        allow_unicode=True)
+        dict(tree), Dumper=_Dumper if _is_plain(tree) else _PythonDumper, sort_keys=False,
+        default_flow_style=None, width=99, allow_unicode=True)
     return text
+
+
+def _is_plain(value: Any) -> bool:
+    """Return whether both dumpers write a tree alike: short texts of ASCII, no key that is ''."""
+    if isinstance(value, Mapping):
+        return '' not in value and all(
+            _is_plain(key) and _is_plain(below) for key, below in value.items())
+    if isinstance(value, list | tuple):
+        return all(map(_is_plain, value))
+    return not isinstance(value, str) or _SHORT.fullmatch(value) is not None

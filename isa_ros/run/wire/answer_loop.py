@@ -1,9 +1,8 @@
 """The compiled loop of an actuator's end, with its memory; see `isa_ros.run.wire.answering`."""
 
-from isa_ros.actuator.rows import row_record
 from isa_ros.actuator.ticking import Ticked
 from isa_ros.core.bound import Bound
-from isa_ros.core.record import float_columns
+from isa_ros.core.record import float_columns, row_record
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.system_calls import system_calls
 from isa_ros.core.timebase import PLANT_STEP_NS

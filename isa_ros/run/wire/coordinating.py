@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from isa_ros.actuator.rows import row_record
 from isa_ros.core.bound import Bound
-from isa_ros.core.record import float_columns
+from isa_ros.core.record import float_columns, row_record
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, Records, SAMPLE, SUPPLY_REPLY
 from isa_ros.core.system_calls import system_calls
 from isa_ros.run.wire import steps

@@ -10,6 +10,7 @@ capacity, is booked as lost. Equations T7 to T9.
 from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
+from isa_ros.core.record import row_record
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits.heat import (
@@ -122,7 +123,7 @@ class Warmth:
             oil=np.zeros(1, OIL_STATE), given=np.zeros(n), ways=np.zeros((n, 2)),
             rows=np.array([1 + places.index(name) for name in names], np.int64))
         """Its memory; what `take` changes is changed in place, once it is there."""
-        self.oil: np.record = self.heating.oil.view(np.recarray)[0]
+        self.oil: np.record = row_record(self.heating.oil)
         """`OIL_STATE`."""
         self.oil.celsius = self.oil.taken = heat.start_celsius
 

@@ -7,6 +7,8 @@ from hypothesis import given, strategies as st
 from isa_ros.config.text import yaml_text as strict_yaml
 from isa_ros.errors import ConfigError
 import pytest
+from pytest import MonkeyPatch
+import yaml
 
 
 @pytest.fixture(params=['the fastest parser', 'the one without libyaml'])
@@ -71,6 +73,32 @@ def test_names_and_texts_survive_a_round_trip(tree: dict[str, str | bool | None]
     text = strict_yaml.dump(tree)
     if tree:
         assert strict_yaml.parse(text, 'x') == tree
+
+
+ASCII = st.text(st.characters(min_codepoint=32, max_codepoint=126), max_size=40)
+SCALARS = st.one_of(
+    ASCII, st.none(), st.booleans(), st.integers(), st.floats(),
+    st.sampled_from(('~', 'null', 'on', '1e5', '0x1f', '12:30', '2001-01-01', '-', '? a', 'a: b')))
+
+
+@pytest.mark.skipif(not yaml.__with_libyaml__, reason='PyYAML was built without libyaml')
+@given(st.dictionaries(ASCII.filter(bool), st.recursive(SCALARS, lambda below: st.one_of(
+    st.lists(below), st.dictionaries(ASCII.filter(bool), below)))))
+def test_the_dumper_of_the_library_writes_the_same_bytes(tree: dict[str, Any]) -> None:
+    """Else a bag of a host whose PyYAML has no library would have another configuration."""
+    with MonkeyPatch.context() as patch:
+        patch.setattr(strict_yaml, '_Dumper', strict_yaml._PythonDumper)
+        by_python = strict_yaml.dump(tree)
+    assert strict_yaml._is_plain(tree) and strict_yaml.dump(tree) == by_python
+
+
+@pytest.mark.parametrize('tree', [
+    {'a': 'x' * 41}, {'a': ['\xe4']}, {'a': {'b': ['c', ('d\n',)]}}, {'': 1}, {'\xe4': 1},
+    {'a': {'b': {'': 1}}}, {'y' * 41: 1}])
+def test_what_dumpers_may_write_in_other_lines_is_left_to_python(tree: dict[str, Any]) -> None:
+    with MonkeyPatch.context() as patch:
+        patch.setattr(strict_yaml, '_Dumper', None)     # a use of it would fail
+        assert strict_yaml.dump(tree)
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:

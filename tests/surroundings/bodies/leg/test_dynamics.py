@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 from hypothesis import given, settings, strategies as st
+from isa_ros.core.record import row_record
 from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY, leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record, STANDARD_GRAVITY
 import numpy as np
@@ -136,7 +137,7 @@ def test_compiled_kernel_equals_its_python_source(q, v):
     """Replay depends on it: the jit must not reorder a rounding."""
     row = BODY.copy()
     assert leg_terms(0.7, *q, *v, row) == leg_terms.py_func(
-        0.7, *q, *v, np.array([row], LEG_BODY).view(np.recarray)[0])
+        0.7, *q, *v, row_record(np.array([row], LEG_BODY)))
 
 
 def test_generated_file_is_what_the_script_writes():
