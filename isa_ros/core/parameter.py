@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import field, replace
-from functools import cache, cached_property
+from functools import cache
 from keyword import iskeyword
 import math
 from typing import Any, TypeVar
@@ -127,12 +127,22 @@ class Parameters:
     KIND = ''
     """In a file, where it is one of several sets; '': as the class is called."""
 
-    @cached_property
+    __slots__ = '__dict__', '__weakref__', '_text'      # beside the values, not among them
+
+    @property
     def as_text(self) -> str:
-        """Return the set as `repr`, kept with it: a set with other values keeps its parts'."""
-        shown = ', '.join(f'{f.name}={text_of(getattr(self, f.name))}'
-                          for f in fields_of(type(self)))
-        return f'{type(self).__qualname__}({shown})'
+        """Return the set as `repr`, made once: a set with other values has that of its parts."""
+        text: str | None = getattr(self, '_text', None)
+        if text is None:
+            shown = ', '.join(f'{f.name}={text_of(getattr(self, f.name))}'
+                              for f in fields_of(type(self)))
+            text = f'{type(self).__qualname__}({shown})'
+            object.__setattr__(self, '_text', text)
+        return text
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the values, for a copy or another process."""
+        return vars(self)
 
     def __post_init__(self) -> None:
         for f in fields_of(type(self)):

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from isa_ros.core.kinds import (
     ArrayKind, kind_of, kind_of_form, kind_text, NumberKind, RecordKind, result_form, TupleKind,
     UnknownKind, value_of, words_of)
+from isa_ros.core.record import attributed, row_record
 import numpy as np
 import pytest
 
@@ -42,6 +43,15 @@ def frozen(array):
     ((1, 2.0), TupleKind(tuple, (I8, F8))), (Pair(1.0, 2), TupleKind(Pair, (F8, I8)))])
 def test_kind(value, kind):
     assert kind_of(value) == kind
+
+
+def test_a_row_is_of_one_kind_whatever_its_class():
+    """Not only of an equal one: a kernel's machine code is looked up by it at each call."""
+    rows = np.zeros(2, MASS)
+    kinds = [kind_of(row) for row in (rows[0], row_record(rows), rows.view(np.recarray)[0])]
+    assert kinds[0] is kinds[1] is kinds[2]
+    arrays = [kind_of(own) for own in (rows, rows.view(attributed(MASS)))]
+    assert arrays[0] is arrays[1] and arrays[0] is not kind_of(rows[::-1])
 
 
 @pytest.mark.parametrize('value', ['text', [1], None, 2 ** 63, -2 ** 63 - 1, 1j, ('a',)])

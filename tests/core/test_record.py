@@ -1,6 +1,9 @@
 """Records are filled by name, all of their fields and no others."""
 
-from isa_ros.core.record import floats, record
+import copy
+import pickle
+
+from isa_ros.core.record import attributed, floats, Record, record, row_record, rows_of
 import numpy as np
 import pytest
 
@@ -49,3 +52,53 @@ def test_records_of_floats_are_seen_as_numbers_in_the_same_memory(shape):
     numbers[:] = np.arange(numbers.size).reshape(numbers.shape)
     assert rows['corner']['y'].reshape(-1).tolist() == [
         1.0 + per_record * k for k in range(rows.size)]
+
+
+def test_a_row_has_attributes_down_to_the_last_on_the_same_memory():
+    """As those of `numpy.record`, which it is; numbers are read and written where they are."""
+    rows = np.zeros(2, [('boxes', BOX, (2,)), ('extent', SIZE)])
+    row = row_record(rows)
+    assert isinstance(row, np.record) and type(row) is type(row.extent) is Record
+    row.extent.width, row.boxes[1].corner.y, row.boxes[1].kind = 2.5, -1.5, 7
+    row.extent['height'] = 4.0
+    assert rows[0].tolist() == (
+        [((0.0, 0.0), 0, [0.0] * 3), ((0.0, -1.5), 7, [0.0] * 3)], (2.5, 4.0))
+    assert rows[1].tolist() == np.zeros(1, rows.dtype)[0].tolist()
+    rows['extent']['width'][0] = 9.0
+    assert row.extent.width == 9.0 and row['extent'].width == 9.0
+    assert row.extent.tolist() == (9.0, 4.0) and repr(row.extent).endswith("('height', '<f8')])")
+
+
+def test_its_type_is_equal_and_made_once():
+    """For machine code it is the same, and comparing two that are not one takes longer than it."""
+    own = attributed(BOX)
+    assert own == BOX and hash(own) == hash(BOX) and own.itemsize == BOX.itemsize
+    assert own['corner'].type is Record and own['table'] == BOX['table']
+    assert attributed(own) is own is attributed(np.dtype(BOX.descr)) is rows_of(3, BOX).dtype
+    assert attributed(np.dtype('f8')) == np.dtype('f8')
+    gaps = np.dtype({'names': ['a', 'b'], 'formats': ['i4', 'f8'], 'offsets': [4, 16],
+                     'itemsize': 40})
+    assert attributed(gaps) == gaps and attributed(gaps).itemsize == 40
+
+
+@pytest.mark.parametrize('copied', [copy.copy, copy.deepcopy, lambda row: pickle.loads(
+    pickle.dumps(row))])
+def test_a_copy_of_a_row_is_a_row_of_its_own(copied):
+    row = record(BOX, kind=7, table=np.arange(3.0), corner=record(POINT, x=1.0, y=2.0))
+    other = copied(row)
+    other.kind = 5
+    assert type(other) is type(other.corner) is Record
+    assert (other.kind, other.corner.y, other.table[2], row.kind) == (5, 2.0, 2.0, 7)
+
+
+def test_a_field_that_is_not_there_is_an_attribute_error_with_those_near_it():
+    row = rows_of(1, BOX)[0]
+    with pytest.raises(AttributeError, match='^no field corners; did you mean corner[?]$'):
+        row.corners
+    with pytest.raises(AttributeError, match='^no field z; valid: x, y$'):
+        row.corner.z = 1.0
+    with pytest.raises(AttributeError, match='^no field __array_me__$'):
+        row.__array_me__
+    with pytest.raises(ValueError, match='could not convert'):
+        row.corner.x = 'far'
+    assert not hasattr(row, 'far') and row.shape == () and row.dtype == BOX

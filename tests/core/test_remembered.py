@@ -51,6 +51,12 @@ def test_all_sets_of_a_call_count() -> None:
     assert own.calls == 3
 
 
+def test_a_name_and_a_place_are_not_mixed_up() -> None:
+    own, disc = Counted(), Disc(radius=2.0)
+    assert own.of(disc, None)[1] is None and own.of(disc, other=disc)[1] is disc
+    assert own.of(disc=disc)[0] == '2.0' and own.calls == 3
+
+
 def test_an_error_is_no_result() -> None:
     answers = iter([ValueError('closed'), 7])
 
