@@ -52,7 +52,7 @@ def _damps(matrix: NDArray[np.float64]) -> bool:
 
 
 class Parts(SimpleNamespace):
-    """Sections of a `PLANT` record, read at once: a record takes 3 us for each of its values."""
+    """Sections of a `PLANT` record, read at once: a record takes half a us for each value."""
 
     def __init__(self, plant: np.record) -> None:
         super().__init__(**{name: _values(plant[name]) for name in (
