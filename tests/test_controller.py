@@ -1,6 +1,6 @@
 """What a user's controller sees and has to have; its setpoints are tested in test_requests.py."""
 
-from isa_ros.controller import Controller, only_of
+from isa_ros.controller import by_name, Controller, only_of
 from isa_ros.core.record import row_record
 from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import RunError
@@ -20,3 +20,10 @@ def test_the_body_of_a_state_is_the_only_one():
     left, right = (row_record(np.zeros(1, SAMPLE)) for _ in range(2))
     assert only_of({}) is None and only_of({'left': left, 'right': right}) is None
     assert only_of({'left': left}) is left
+
+
+def test_samples_by_name_are_rows_of_the_memory_itself():
+    rows = np.zeros(2, SAMPLE)
+    found = by_name(['haa', 'hfe'], rows)
+    rows['position'][:] = 0.25, 0.5
+    assert [(name, own.position) for name, own in found.items()] == [('haa', 0.25), ('hfe', 0.5)]

@@ -39,6 +39,8 @@ def test_it_is_made_once_and_parts_keep_theirs() -> None:
     higher = replace(stack, height=3.0)
     assert higher.as_text == 'Stack(disc=Disc(radius=0.5), height=3.0)'
     assert higher.disc.as_text is stack.disc.as_text
+    object.__setattr__(stack.disc, '_text', 'kept')
+    assert replace(stack, height=4.0).as_text == 'Stack(disc=kept, height=4.0)'
     assert text_of((1, -0.0)) == '(1, -0.0)'
 
 

@@ -59,6 +59,7 @@ def test_a_row_has_attributes_down_to_the_last_on_the_same_memory():
     rows = np.zeros(2, [('boxes', BOX, (2,)), ('extent', SIZE)])
     row = row_record(rows)
     assert isinstance(row, np.record) and type(row) is type(row.extent) is Record
+    assert row.extent.dtype is row.extent.dtype is row['extent'].dtype    # none is made anew
     row.extent.width, row.boxes[1].corner.y, row.boxes[1].kind = 2.5, -1.5, 7
     row.extent['height'] = 4.0
     assert rows['boxes']['corner']['y'].tolist() == [[0.0, -1.5], [0.0, 0.0]]

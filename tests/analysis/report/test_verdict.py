@@ -83,6 +83,8 @@ def test_what_comes_to_rest_while_its_device_is_off_has_not_settled():
     at_first = Band('ram', 0.0, 0.1, 'enabled')
     assert told(at_first, Band('ram', 0.1, 1.0, 'disabled')) == {
         'Came to rest, its device disabled: ram at t = 0.200 s.': NOTE}
+    assert told(Band('ram', 0.0, 0.2, 'enabled'), Band('ram', 0.2, 1.0, 'fault')) == {
+        'Came to rest, its device fault: ram at t = 0.200 s.': NOTE}
     assert told(Band('ram', 0.0, 0.2, 'fault'), Band('other', 0.0, 1.0, 'fault'),
                 Band('ram', 0.2, 0.5, 'enabled'), Band('ram', 0.5, 1.0, 'disabled')) == {
         'Settled: ram at t = 0.200 s.': GOOD}
