@@ -34,6 +34,7 @@ class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors."""
 
     _is_mixed = False
+    _MIXES = True   # words and options
 
     def error(self, message: str) -> NoReturn:
         chosen = _CHOICE.match(message)
@@ -52,13 +53,19 @@ class _Parser(argparse.ArgumentParser):
         """
         found, unknown = super().parse_known_args(args, namespace)
         if unknown and ' ' in self.prog and not self._is_mixed:
-            if self._subparsers is None:
+            if self._MIXES and self._subparsers is None:
                 self._is_mixed = True       # by which this method is called again
                 found, unknown = self.parse_known_intermixed_args(args, namespace)
                 self._is_mixed = False
             if unknown:
                 self.error(f'unrecognized arguments: {" ".join(unknown)}')
         return found, unknown
+
+
+class _AsWritten(_Parser):
+    """Parser of words with `--`: what stands behind it is no option, however often it is read."""
+
+    _MIXES = False
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -99,11 +106,12 @@ def make_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     With the ``words`` of a command line, commands that are not among them are without their
     arguments: adding those of all takes 8 ms.
     """
-    common = _Parser(add_help=False)
+    kind = _AsWritten if words is not None and '--' in words else _Parser
+    common = kind(add_help=False)
     common.add_argument(
         '--debug', action='store_true', default=argparse.SUPPRESS,
         help='show the traceback of an error')
-    parser = _Parser(
+    parser = kind(
         prog='isa', parents=[common],
         description='Hydraulic integrated smart actuators, simulated in lockstep.')
     parser.add_argument(

@@ -149,6 +149,8 @@ class Parameters:
             value = getattr(self, f.name)
             if not isinstance(value, Parameters):
                 check(f'{type(self).__name__}.{f.name}', value, f.metadata)
+                if isinstance(value, list):     # which could be changed
+                    object.__setattr__(self, f.name, tuple(value))
 
 
 _P = TypeVar('_P', bound=Parameters)

@@ -1,7 +1,7 @@
 """Numpy records whose fields have names, in kernels and in plain Python alike."""
 
 from collections.abc import Collection
-from functools import cache
+from functools import cache, lru_cache
 import math
 from typing import Any
 
@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 class Record(np.record):    # type: ignore[misc]  # with what a row has before numpy's own class
     """
-    A row with its fields as attributes, in a tenth of the time that `numpy.record` takes.
+    A row with its fields as attributes, in a third of the time that `numpy.record` takes.
 
-    A field that is a row is one too, without another type made of it; `attributed` is of such.
+    A field that is a row is one too, without another type made of it, in a tenth; `attributed` is
+    of such. A row of several fields, ``row[['x', 'n']]``, is numpy's, without attributes.
     """
 
     __getattribute__ = np.void.__getattribute__
@@ -25,7 +26,7 @@ class Record(np.record):    # type: ignore[misc]  # with what a row has before n
         try:
             return self[name]
         except ValueError:
-            raise AttributeError(_unknown(name, self)) from None
+            raise AttributeError(_unknown(name, self.dtype.names)) from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Fill a field."""
@@ -34,16 +35,17 @@ class Record(np.record):    # type: ignore[misc]  # with what a row has before n
         except ValueError:
             if name in (self.dtype.names or ()):
                 raise
-            raise AttributeError(_unknown(name, self)) from None
+            raise AttributeError(_unknown(name, self.dtype.names)) from None
 
 
-def _unknown(name: str, row: Record) -> str:
-    known = '' if name.startswith('_') else f'; {alternatives(name, row.dtype.names or ())}'
+@lru_cache(256)     # a controller may ask for a field at each tick
+def _unknown(name: str, names: tuple[str, ...] | None) -> str:
+    known = '' if name.startswith('_') else f'; {alternatives(name, names or ())}'
     return f'no field {name}{known}'
 
 
 def attributed(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """Return an equal type, whose rows and nested rows are `Record`."""
+    """Return an equal type, without titles and alignment, whose rows, also nested, are `Record`."""
     return dtype if dtype.type is Record else _attributed(dtype)
 
 

@@ -79,6 +79,8 @@ def test_debug_shows_the_traceback_and_keeps_the_exit_code(
      'isa bode: unrecognized arguments: --open; see isa bode --help'),
     (['command', 'ram', '--stiffness', '1e5', '0.1', '0.2'],
      'isa command: unrecognized arguments: 0.2; see isa command --help'),
+    (['paper', '--', '--debug', 'table_1'],
+     'isa paper: unrecognized arguments: table_1; see isa paper --help'),
     (['bus', '--fast', 'ethercat', 'leg', '--interface', 'ecs'],
      'isa bus: unrecognized arguments: --fast; see isa bus --help'),
 ])

@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, replace
 import pickle
 
 from isa_ros.core.frozen import frozen
-from isa_ros.core.parameter import parameter, Parameters, text_of
+from isa_ros.core.parameter import numbers, parameter, Parameters, text_of
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override
 
@@ -15,6 +15,22 @@ class Disc(Parameters):
     """A set of one value."""
 
     radius: float = parameter('of the disc', 'm', ge=-1e3, le=1e3)
+
+
+@frozen(kw_only=True)
+class Curve(Parameters):
+    """A set of several values in one."""
+
+    points: tuple[float, ...] = numbers('of a curve', 'm', least=1, most=9)
+
+
+def test_a_list_cannot_be_changed_afterwards() -> None:
+    """Else its text, and what is remembered by it, would be that of the old values."""
+    given = [1.0, 2.0]
+    curve = Curve(points=given)     # type: ignore[arg-type]
+    given[0] = 9.0
+    assert curve.points == (1.0, 2.0) and curve == Curve(points=(1.0, 2.0))
+    assert curve.as_text == 'Curve(points=(1.0, 2.0))' and hash(curve)
 
 
 @frozen(kw_only=True)

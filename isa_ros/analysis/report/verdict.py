@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import ripple_at_end, settling_time
+from isa_ros.analysis.report.key_figures import END, settling_time
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
-from isa_ros.analysis.signals.signals import LARGEST, Signals
+from isa_ros.analysis.signals.signals import LARGEST, Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.device import ENABLED, state_name
 from isa_ros.core.suggest import listed
@@ -16,7 +16,8 @@ import numpy as np
 
 GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
-_RIPPLE = 0.01  # of the range of the force sensor: more at the end of a motion is told
+_RIPPLE = 0.01  # of the range of the force sensor: a larger swing after a motion is told
+_PASSES = 4     # of its middle, from which on a force swings: two periods
 _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
     REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
@@ -55,7 +56,7 @@ def verdict(signals: Signals, events: Sequence[Event], bands: Sequence[Band], en
     found += [Statement(NOTE, f'Limit reached: {own}.') for own in limits]
     if not limits:
         found.append(Statement(GOOD, 'No loop, end stop or relief valve reached its limit.'))
-    return [*found, *_motion(signals, bands), *_ripples(signals)]
+    return [*found, *_motion(signals, bands), *_swings(signals)]
 
 
 def _told(word: str, grade: str, events: Sequence[Event]) -> Iterator[Statement]:
@@ -76,7 +77,7 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
         settled = settling_time(t, x)
         word = ('Did not move' if np.ptp(x) == 0.0 else
                 'Still moving at the end' if settled is None else
-                _word_at_rest(own, settled, bands))
+                _word_at_rest(own, bands))
         words.setdefault(word, []).append(
             own.name if settled is None else f'{own.name} at t = {settled:.3f} s')
     for word in sorted(words):
@@ -84,23 +85,49 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
         yield Statement(GOOD if is_good else NOTE, f'{word}: {", ".join(words[word])}.')
 
 
-def _word_at_rest(own: ActuatorConfig, t_s: float, bands: Sequence[Band]) -> str:
-    """Return what is said of an actuator that came to rest; its device may be off by then."""
-    for band in bands:
-        if band.source == own.name and band.begin_s <= t_s < band.end_s:
-            return _SETTLED if band.state == _ON else f'Came to rest, its device {band.state}'
-    return _SETTLED
+def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:
+    """Return what is said of an actuator that came to rest; its device may be off at the end."""
+    states = [band.state for band in bands if band.source == own.name]
+    return (_SETTLED if not states or states[-1] == _ON else
+            f'Came to rest, its device {states[-1]} at the end')
 
 
-def _ripples(signals: Signals) -> Iterator[Statement]:
-    """Yield forces that vary on where the motion has settled, as those of loops that hunt do."""
+def _swings(signals: Signals) -> Iterator[Statement]:
+    """Yield forces that go on to swing where the motion has ended, as those of loops that hunt."""
     for own in signals.run.actuators:
-        position, force = (signals.drawn(f'{own.name}.{field}') for field in ('position', 'force'))
-        if not len(position.t) or settling_time(*position) is None:
+        position = signals.drawn(f'{own.name}.position')
+        if not len(position.t) or not _has_ended(position):
             continue
-        ripple, span = ripple_at_end(force.values), own.sheet.plant.sensors.force_range
-        if ripple is not None and ripple > _RIPPLE * span:
+        swing = _swing(signals.drawn(f'{own.name}.force'))
+        wanted = _swing(signals.drawn(f'{own.name}.force_reference'))
+        span = own.sheet.plant.sensors.force_range
+        is_blocked = np.ptp(position.values) == 0.0
+        if swing > _RIPPLE * span and not (is_blocked and wanted > 0.5 * swing):
             yield Statement(NOTE, (
-                f'Force varies in the last tenth of the time: {own.name} by '
-                f'+-{digits(ripple, 3)} {signals.unit(f"{own.name}.force")}, '
-                f'{100.0 * ripple / span:.2g} % of the range of its sensor.'))
+                f'Force swings in the last tenth of the time: {own.name} by '
+                f'+-{digits(swing, 3)} {signals.unit(f"{own.name}.force")}, '
+                f'{100.0 * swing / span:.2g} % of the range of its sensor.'))
+
+
+def _has_ended(position: Signal) -> bool:
+    """Return whether an actuator has settled, or never moved."""
+    return np.ptp(position.values) == 0.0 or settling_time(*position) is not None
+
+
+def _swing(signal: Signal) -> float:
+    """
+    Return half of peak to peak of a signal in the last tenth of the time; 0: it does not swing.
+
+    A swing passes the middle between its extremes again and again, by half of its height on each
+    side: a step or a drift is none, and neither is one pulse.
+    """
+    if not len(signal.t):
+        return 0.0
+    tail = signal.values[signal.t >= signal.t[-1] - END * (signal.t[-1] - signal.t[0])]
+    tail = tail[np.isfinite(tail)]
+    if not len(tail):
+        return 0.0
+    height = 0.5 * float(np.ptp(tail))
+    from_middle = tail - (float(tail.min()) + height)
+    sides = np.sign(from_middle[np.abs(from_middle) > 0.5 * height])
+    return height if np.count_nonzero(np.diff(sides)) >= _PASSES else 0.0

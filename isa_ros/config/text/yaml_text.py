@@ -191,10 +191,16 @@ def dump(tree: Mapping[str, Any]) -> str:
 
 
 def _is_plain(value: Any) -> bool:
-    """Return whether both dumpers write a tree alike: short texts of ASCII, no key that is ''."""
+    """
+    Return whether both dumpers write a tree alike.
+
+    Its texts are short and of ASCII, its keys such texts and not empty, all else is numbers.
+    """
     if isinstance(value, Mapping):
-        return '' not in value and all(
-            _is_plain(key) and _is_plain(below) for key, below in value.items())
+        return all(isinstance(key, str) and key and _is_plain(key) and _is_plain(below)
+                   for key, below in value.items())
     if isinstance(value, list | tuple):
         return all(map(_is_plain, value))
-    return not isinstance(value, str) or _SHORT.fullmatch(value) is not None
+    if isinstance(value, str):
+        return _SHORT.fullmatch(value) is not None
+    return value is None or isinstance(value, bool | int | float)

@@ -73,36 +73,58 @@ def test_what_settles_is_told_apart_from_what_moves():
     assert texts(moves, NOTE) == ['Still moving at the end: ram.']
 
 
-def test_what_comes_to_rest_while_its_device_is_off_has_not_settled():
-    """Settled at 0.2 s: who was off then is told, not who was off before or after."""
+def test_what_came_to_rest_and_is_off_at_the_end_has_not_settled():
+    """A device that was off before, or another one, does not count."""
     own = signals(position=0.05 - 0.01 * np.exp(-T / 0.05))
 
     def told(*bands):
         return {words.text: words.grade for words in verdict(own, [], bands, '')
                 if 'ram at t' in words.text}
-    at_first = Band('ram', 0.0, 0.1, 'enabled')
-    assert told(at_first, Band('ram', 0.1, 1.0, 'disabled')) == {
-        'Came to rest, its device disabled: ram at t = 0.200 s.': NOTE}
-    assert told(Band('ram', 0.0, 0.2, 'enabled'), Band('ram', 0.2, 1.0, 'fault')) == {
-        'Came to rest, its device fault: ram at t = 0.200 s.': NOTE}
-    assert told(Band('ram', 0.0, 0.2, 'fault'), Band('other', 0.0, 1.0, 'fault'),
-                Band('ram', 0.2, 0.5, 'enabled'), Band('ram', 0.5, 1.0, 'disabled')) == {
-        'Settled: ram at t = 0.200 s.': GOOD}
+    on, off = Band('ram', 0.0, 0.3, 'enabled'), Band('ram', 0.3, 1.0, 'disabled')
+    assert told(on, off) == {
+        'Came to rest, its device disabled at the end: ram at t = 0.200 s.': NOTE}
+    assert told(on, Band('ram', 0.3, 0.4, 'fault reaction'), Band('ram', 0.4, 1.0, 'fault')) == {
+        'Came to rest, its device fault at the end: ram at t = 0.200 s.': NOTE}
+    settled = {'Settled: ram at t = 0.200 s.': GOOD}
+    assert told(Band('ram', 0.0, 0.5, 'disabled'), Band('ram', 0.5, 1.0, 'enabled'),
+                Band('other', 0.0, 1.0, 'fault')) == told(on) == told() == settled
 
 
-def test_a_force_that_varies_where_the_motion_has_settled_is_told():
-    """A square wave of +-1.01 % of the range of the sensor about 2 kN; one of 0.99 % is not."""
-    rest, span = 0.05 - 0.01 * np.exp(-T / 0.05), SHEET.plant.sensors.force_range
-    wave = 0.01 * span * (-1.0) ** np.arange(101)
+REST = 0.05 - 0.01 * np.exp(-T / 0.05)
+SPAN = SHEET.plant.sensors.force_range
+WAVE = 0.01 * SPAN * (-1.0) ** np.arange(101)      # +-1 % of the range of the sensor
 
-    def told(share, position=rest):
-        found = verdict(signals(position=position, force=2e3 + share * wave), [], [], '')
-        return [text for text in texts(found, NOTE) if text.startswith('Force')]
-    assert told(1.01) == [
-        f'Force varies in the last tenth of the time: ram by +-{0.0101 * span:.3g} N, 1 % of the '
-        'range of its sensor.']
-    assert told(0.99) == [] == told(9.0, 0.04 + 0.01 * T)
-    assert told(np.where(T < 0.85, 9.0, 0.5)) == []
+
+def swings(force, position=REST, **more):
+    found = verdict(signals(position=position, force=force, **more), [], [], '')
+    return [text for text in texts(found, NOTE) if text.startswith('Force')]
+
+
+def test_a_force_that_swings_where_the_motion_has_ended_is_told():
+    """A square wave about 2 kN, and one of a blocked actuator."""
+    expected = [f'Force swings in the last tenth of the time: ram by +-{0.0101 * SPAN:.3g} N, 1 % '
+                'of the range of its sensor.']
+    blocked = np.full(101, 0.04)
+    assert swings(2e3 + 1.01 * WAVE) == swings(1.01 * WAVE, blocked) == expected
+    gap = np.where(np.arange(101) == 95, np.nan, 1.01 * WAVE)
+    assert swings(gap) == expected
+    assert swings(0.99 * WAVE) == swings(0.99 * WAVE, blocked) == []
+    assert swings(9.0 * WAVE, 0.04 + 0.01 * T) == []                # it moves
+    assert swings(np.where(T < 0.85, 9.0, 0.5) * WAVE) == []        # it has ended
+
+
+def test_what_is_wanted_of_a_blocked_actuator_is_not_told():
+    blocked, wave = np.full(101, 0.04), 9.0 * WAVE
+    assert swings(wave, blocked, force_reference=0.51 * wave) == []
+    assert len(swings(wave, blocked, force_reference=0.49 * wave)) == 1
+    assert len(swings(wave, force_reference=wave)) == 1     # of a loop around it
+
+
+def test_a_step_a_drift_and_a_pulse_are_no_swings():
+    step, pulse = np.where(T > 0.95, SPAN, 0.0), np.where(np.abs(T - 0.95) < 0.02, SPAN, 0.0)
+    assert swings(step + 0.001 * WAVE) == swings(SPAN * T) == swings(pulse) == []
+    twice = np.where(np.isin(np.arange(101), (93, 97)), SPAN, 0.0)      # four passes
+    assert len(swings(twice)) == 1
 
 
 def test_of_another_version_no_limits_are_told():

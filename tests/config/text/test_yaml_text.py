@@ -1,5 +1,6 @@
 """Strict YAML: errors with their line, and numbers that keep every bit."""
 
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -94,7 +95,8 @@ def test_the_dumper_of_the_library_writes_the_same_bytes(tree: dict[str, Any]) -
 
 @pytest.mark.parametrize('tree', [
     {'a': 'x' * 41}, {'a': ['\xe4']}, {'a': {'b': ['c', ('d\n',)]}}, {'': 1}, {'\xe4': 1},
-    {'a': {'b': {'': 1}}}, {'y' * 41: 1}])
+    {'a': {'b': {'': 1}}}, {'y' * 41: 1}, {'a': {10 ** 125: 1}}, {'a': [date(2020, 1, 1)]},
+    {'a': {'b', ''}}])
 def test_what_dumpers_may_write_in_other_lines_is_left_to_python(tree: dict[str, Any]) -> None:
     with MonkeyPatch.context() as patch:
         patch.setattr(strict_yaml, '_Dumper', None)     # a use of it would fail
