@@ -45,7 +45,7 @@ def _unknown(name: str, names: tuple[str, ...] | None) -> str:
 
 
 def attributed(dtype: np.dtype[Any]) -> np.dtype[Any]:
-    """Return an equal type, without titles and alignment, whose rows, also nested, are `Record`."""
+    """Return an equal type, less titles and alignment, whose rows at any depth are `Record`."""
     return dtype if dtype.type is Record else _attributed(dtype)
 
 
