@@ -1,7 +1,7 @@
 """What a user's controller sees and has to have; its setpoints are tested in test_requests.py."""
 
 from isa_ros.controller import by_name, Controller, only_of
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import RunError
 import numpy as np
@@ -17,7 +17,7 @@ def test_a_controller_that_keeps_nothing_says_so_itself():
 
 
 def test_the_body_of_a_state_is_the_only_one():
-    left, right = (row_record(np.zeros(1, SAMPLE)) for _ in range(2))
+    left, right = (rows_of(1, SAMPLE)[0] for _ in range(2))
     assert only_of({}) is None and only_of({'left': left, 'right': right}) is None
     assert only_of({'left': left}) is left
 

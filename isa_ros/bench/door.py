@@ -13,7 +13,7 @@ import isa_ros
 from isa_ros.bench.crane import crane, crane_model, CRANE_NAMES, crane_run
 from isa_ros.bench.parts import left_of
 from isa_ros.bench.row import Row
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.simulation import Simulation
 from isa_ros.surroundings.port import keep_forces, kept_forces, match_ports
@@ -93,7 +93,7 @@ def crane_rows() -> list[Row]:
     import mujoco
     run = crane_run(1.0)
     own: Simulation = run.simulation(body=crane(2e-4, 'RK4'))
-    bodies, kept = {}, row_record(np.zeros(1, kept_forces(3)))
+    bodies, kept = {}, rows_of(1, np.dtype(kept_forces(3)))[0]
     mounting = _mounting()
     for has_response in (False, True):
         bodies[has_response] = isa_ros.MechanismBody(

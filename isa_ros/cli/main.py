@@ -34,7 +34,7 @@ class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors."""
 
     _is_mixed = False
-    _MIXES = True   # words and options
+    _MIXES = True   # reads words that may be left out behind options
 
     def error(self, message: str) -> NoReturn:
         chosen = _CHOICE.match(message)

@@ -7,7 +7,7 @@ closes without a remainder: every term has its own formula, none is the rest of 
 
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 import numpy as np
 
 _LN_2 = 0.6931471805599453
@@ -28,7 +28,7 @@ ENERGIES = np.dtype([
 
 def no_powers() -> np.record:
     """Return an `ENERGIES` record of zeros with its fields as attributes."""
-    powers: np.record = row_record(np.zeros(1, ENERGIES))
+    powers: np.record = rows_of(1, ENERGIES)[0]
     return powers
 
 

@@ -6,7 +6,7 @@ position or a speed.
 """
 
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.units import MILLI
 from isa_ros.paper.printed import cell, Printed, statement
 from isa_ros.plant.servo_valve import flow_curve
@@ -38,7 +38,7 @@ def reu_statics() -> Findings:
 def _force_block(model: str) -> tuple[np.record, np.record]:
     """Return a force block and its state at rest."""
     record = row_record(actuator_record(model_sheet(model), 0)).reu.force
-    return record, row_record(np.zeros(1, BLOCK_STATE))
+    return record, rows_of(1, BLOCK_STATE)[0]
 
 
 def proportional_gain(model: str) -> float:
@@ -122,7 +122,7 @@ def _impedance_gain(
     """Return the force over a small displacement or speed against the setpoint."""
     sheet = model_sheet(model)
     limits = row_record(actuator_record(sheet, 0)).reu.impedance
-    setpoint = row_record(np.zeros(1, SETPOINT))
+    setpoint = rows_of(1, SETPOINT)[0]
     setpoint.stiffness, setpoint.damping = initial_gains(sheet.reu)
     small = SMALL * limits.force_out / printed.number
     force = force_reference(setpoint, moved[0] * small, moved[1] * small, limits)

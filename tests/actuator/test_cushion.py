@@ -5,7 +5,7 @@ import math
 from typing import Any
 
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant.cushion import divide
@@ -194,8 +194,8 @@ def test_in_a_cushion_no_force_contradicts_the_pressures(place, is_trusted):
     """R14, and the error of the force: the spear takes a part that no sensor measures."""
     own = actuator_record(actuator_sheet('cylinder', 'default', 'cushioned'), 0)
     evidence = row_record(own).reu.protection.evidence
-    state = row_record(np.zeros(1, EVIDENCE_STATE))
-    measured = row_record(np.zeros(1, MEASURED))
+    state = rows_of(1, EVIDENCE_STATE)[0]
+    measured = rows_of(1, MEASURED)[0]
     measured.position, measured.pressure_a = place, 10e6
     found = unexplained_force(measured, 0.0, 0.2, evidence, state)
     assert (found > 1e3) == is_trusted and (found == 0.0) != is_trusted

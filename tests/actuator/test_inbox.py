@@ -5,7 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.actuator import inbox
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, IMPEDANCE, SPOOL
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.cascade import REU_STATE
@@ -30,7 +30,7 @@ def row(*values: float) -> np.record:
 
 def reu_at(position: float, state: int = ENABLED, mode: int = IMPEDANCE) -> np.record:
     """Return a `REU_STATE` that measures a position and has a setpoint in force."""
-    reu = row_record(np.zeros(1, REU_STATE))
+    reu = rows_of(1, REU_STATE)[0]
     reu.measured.position = position
     setpoint = reu.setpoint
     setpoint.position, setpoint.velocity, setpoint.effort = 0.04, 0.5, 20.0

@@ -7,7 +7,7 @@ from isa_ros.actuator.sheet import ActuatorSheet, ROUNDED
 from isa_ros.actuator.tunable import changing, refuse_unusable, tunables, with_changed
 from isa_ros.actuator.usable import RELAY, usable
 from isa_ros.config.models.catalogue import actuator_model, model_names
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.reu.block import block_record, BLOCK_STATE, block_step
@@ -32,7 +32,7 @@ def test_at_the_bound_one_count_saturates_the_block_and_at_half_of_it_does_not(m
     for kp in (largest, 0.5 * largest):
         alone = replace(force, kp=kp, ki=0.0, compensation=Linear(), retracting_factor=1.0)
         row = row_record(np.array([block_record(alone, np.ones(POINTS))]))
-        state = row_record(np.zeros(1, BLOCK_STATE))
+        state = rows_of(1, BLOCK_STATE)[0]
         block_step(count, 0.0, 0.0, 0.0, 1.0, row, state)
         outputs.append(abs(state.output))
     # A quotient and a product: two roundings of half an ulp, at most 2.2e-16 each.
@@ -108,7 +108,7 @@ def test_the_output_of_a_block_is_what_the_next_one_inwards_can_have():
 def test_a_gain_on_a_speed_has_the_bound_of_one_count_through_its_filter():
     """F / (alpha q f): the speed that one count of the encoder shows at first."""
     sheet = actuator_sheet('isa_v5')
-    state = row_record(np.zeros(1, SPEED_STATE))
+    state = rows_of(1, SPEED_STATE)[0]
     row = row_record(np.array([speed_record(sheet.reu.speed)]))
     count = float(sensors_record(sheet.plant.sensors)['encoder'])
     speed_step(count, row, state)

@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.controller import Setpoint
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, SPOOL
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import COMMAND, EVERY_KIND, SAMPLE
 from isa_ros.requests import fill_requests
 from msg_adapters.setpoint import applied_to_command, msg_to_command
@@ -83,7 +83,7 @@ def _of_bag(dice: random.Random) -> None:
 
 
 def _of_controller(dice: random.Random) -> None:
-    requests, sample = np.zeros(1, COMMAND), row_record(np.zeros(1, SAMPLE))
+    requests, sample = np.zeros(1, COMMAND), rows_of(1, SAMPLE)[0]
     sample.device_mode = dice.choice((CURRENT, SPOOL, FORCE, POSITION, IMPEDANCE))
     fill_requests(controlled(dice), [NAME], requests, {NAME: sample})
     if requests[0]['kinds']:

@@ -5,7 +5,7 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.core.parameter import defaults
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant.block_valve import (
     block_record, blocked_line, drive_block, line_pressure, poppet_conductance, PoppetBlock,
@@ -14,7 +14,6 @@ from isa_ros.plant.energy import no_powers
 from isa_ros.plant.plant import plant_record, PLANT_STATE
 from isa_ros.plant.rates import plant_rates
 from isa_ros.plant.servo_valve import conductances, signed_sqrt, smoothing
-import numpy as np
 import pytest
 from scipy.optimize import brentq
 from tests.sheets import actuator_sheet
@@ -106,7 +105,7 @@ def test_the_slope_of_the_smoothed_root_is_its_derivative(dp):
 def test_both_chambers_get_what_two_orifices_in_series_pass(lift, x):
     """V22 in the plant: against a bracketing solver of the two flows of each line."""
     plant = blocked_plant(leakage_lpm=0.3)
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.mechanics.position, y.spool.position, y.block.lift = 0.05, x, lift
     y.chambers.p_a, y.chambers.p_b = 14e6, 3e6
     plant.block.slew = -7.0
@@ -138,7 +137,7 @@ def test_both_chambers_get_what_two_orifices_in_series_pass(lift, x):
 def test_what_the_lines_lose_is_throttled(x, lift, p_a, p_b):
     """E2: P_S Q_P - P_T Q_T is what the chambers take up, leaks, lands, poppets and relief."""
     plant = blocked_plant()
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.mechanics.position, y.spool.position, y.block.lift = 0.05, x, lift
     y.chambers.p_a, y.chambers.p_b = p_a, p_b
     powers = no_powers()
@@ -153,7 +152,7 @@ def test_what_the_lines_lose_is_throttled(x, lift, p_a, p_b):
 def test_closed_poppets_without_leakage_shut_the_chambers_whatever_the_spool_does():
     plant = blocked_plant(leakage_lpm=0.0)
     plant.chambers.c_li = 0.0
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.mechanics.position, y.spool.position = 0.05, 1.7e-4
     y.chambers.p_a, y.chambers.p_b = 2e6, 15e6
     plant_rates(y, 0.05, 0.0, 0.0, SUPPLY, BACK, plant, False, rates, False, no_powers())

@@ -5,7 +5,7 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.core.constants import ATMOSPHERE
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.plant import cavitation, chambers
 import numpy as np
 import pytest
@@ -98,7 +98,7 @@ class TestAStepIsOfVolumes:
     ROW = chambers.chambers_record(SHEET.drive, SHEET.oil, SHEET.mechanics.inertia)
 
     def of(self, row: np.record, s: float = 0.05, v: float = 0.0, **values: float) -> bool:
-        state = row_record(np.zeros(1, chambers.CHAMBERS_STATE))
+        state = rows_of(1, chambers.CHAMBERS_STATE)[0]
         state.p_a = state.p_b = 5e6
         for name, value in values.items():
             setattr(state, name, value)

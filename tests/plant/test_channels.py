@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
 from isa_ros.plant.channels import (
@@ -28,7 +28,7 @@ def shown(own, n, first=1, state=None):
 
     The exact value of channel k at conversion i is 1000 k + i.
     """
-    state = row_record(np.zeros(1, CHANNELS_STATE)) if state is None else state
+    state = rows_of(1, CHANNELS_STATE)[0] if state is None else state
     rows = np.empty((n, N_CHANNELS))
     for i in range(n):
         step = first + i * PERIOD
@@ -72,7 +72,7 @@ def test_a_delay_is_of_whole_conversions(conversions):
 
 def test_a_stuck_channel_keeps_its_value():
     """From the beginning: the first one."""
-    state = row_record(np.zeros(1, CHANNELS_STATE))
+    state = rows_of(1, CHANNELS_STATE)[0]
     own = errors(pressure_a={'bias': 1.0})
     before = shown(own, 10, state=state)
     after = shown(errors(pressure_a={'bias': 1.0, 'stuck': 1.0}), 10, 51, state)
@@ -83,7 +83,7 @@ def test_a_stuck_channel_keeps_its_value():
 
 def test_after_a_gap_line_and_drift_begin_again():
     """Ideal channels keep no line: an error that comes during a run begins with it."""
-    state = row_record(np.zeros(1, CHANNELS_STATE))
+    state = rows_of(1, CHANNELS_STATE)[0]
     own = errors(force={'delay_ms': 0.5, 'drift_per_s': 1.0})
     shown(own, 20, state=state)
     later = shown(own, 20, 10_001, state)[:, 1]

@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import given, strategies as st
 import isa_ros
 from isa_ros.actuator.sheet import refuse_wiring
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.timebase import FASTEST_RATE
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import cushion
@@ -128,7 +128,7 @@ def test_a_spear_is_in_over_its_length(end):
     length = (PLANT.cushion_a if end < 0.0 else PLANT.cushion_b).length
     assert length == pytest.approx(20e-3, rel=1e-12, abs=0.0)
     for d, found in ((length - 1e-9, end), (length + 1e-9, 0.0)):
-        y = row_record(np.zeros(1, PLANT_STATE))
+        y = rows_of(1, PLANT_STATE)[0]
         y.mechanics.position = d if end < 0.0 else float(PLANT.chambers.stroke) - d
         cushion.divide.py_func(y, PLANT)
         assert y.cushion.end == found
@@ -138,7 +138,7 @@ def test_a_spear_is_in_over_its_length(end):
 def test_what_passes_the_spear_is_as_dense_as_where_it_comes_from(drop):
     """C32: of a piston at rest, the trapped side lacks the mass that left it."""
     own, oil, d, p = PLANT.cushion_a, PLANT.chambers, 5e-3, 6e6
-    y, rates = (row_record(np.zeros(1, cushion.CUSHION_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, cushion.CUSHION_STATE)[0] for _ in 'yr')
     volume = cushion.trapped_volume(d, own)
     y.p, y.cavity = p + drop, cushion.lack(p + drop, 0.0, volume, oil)
     _, per_c, more_c = cushion.contents(y.cavity, volume, y.p, oil)
@@ -157,7 +157,7 @@ def test_compiled_kernels_equal_python(dp, d, v):
     """Bit for bit, of the spear in a step of volumes."""
     found = []
     for passed in (cushion.pass_spear, cushion.pass_spear.py_func):
-        y, rates = (row_record(np.zeros(1, cushion.CUSHION_STATE)) for _ in 'yr')
+        y, rates = (rows_of(1, cushion.CUSHION_STATE)[0] for _ in 'yr')
         volume = cushion.trapped_volume(d, PLANT.cushion_a)
         y.cavity = cushion.lack(5e6 + dp, 0.0, volume, PLANT.chambers)
         found.append((*passed(y, d, v, 5e6, 2e13, 0.01, 1e-4, PLANT.chambers, PLANT.cushion_a,

@@ -3,7 +3,7 @@
 from dataclasses import replace
 import math
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.plant.counterbalance import counterbalance_excess, counterbalance_record
 from isa_ros.plant.linearised import LoadSide
@@ -77,7 +77,7 @@ def test_a_hose_at_rest_is_no_higher_than_its_chamber_behind_the_valve(force):
     sheet = actuator_sheet('cylinder').plant
     own = row_record(plant_record(replace(
         sheet, hoses=HOSES, holding_a=COUNTERBALANCE, holding_b=CHECK)))
-    at = row_record(np.zeros(1, PLANT_STATE))
+    at = rows_of(1, PLANT_STATE)[0]
     at.mechanics.position = 0.1
     rest_oil(own, 16e6, 0.0, force, at)
     lowest = np.minimum((at.chambers.p_a, at.chambers.p_b), null_pressures(own, 16e6, 0.0))

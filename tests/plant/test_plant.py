@@ -5,7 +5,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant import chambers, servo_valve
@@ -99,7 +99,7 @@ def rates_at(
         plant: np.record, supply: float = SUPPLY, **chamber: float
         ) -> tuple[np.record, tuple[float, float, float]]:
     """Return the rates of a plant at rest at mid stroke, and its sensor force and flows."""
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.mechanics.position = x = 0.5 * plant.chambers.stroke
     for name, value in chamber.items():
         setattr(y.chambers, name, value)
@@ -149,7 +149,7 @@ def test_the_valve_feels_the_resonance_of_its_coil():
     """V11, V13: the spool is driven by the current with its mode, on the series scale."""
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
     plant = plant_record(sheet.plant)[0]
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.coil.mode = 1e-3
     plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, False, rates, False, no_powers())
     series = plant.coil.mode_share * 1e-3 / 2.0

@@ -8,7 +8,7 @@ their sums and differences are exact, and so is the comparison.
 """
 
 from hypothesis import given, strategies as st
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.plant import relief, servo_valve
 from isa_ros.plant.energy import no_powers
 from isa_ros.plant.plant import PLANT_STATE
@@ -53,7 +53,7 @@ def test_the_refill_follows_the_drop_below_the_return(below, p_t):
 def plant_flows(
         plant: np.record, spool: float, p_a: int, p_b: int, raised: int) -> tuple[float, ...]:
     """Return both pressures' rates, q_p and q_t of a resting plant, all raised alike."""
-    y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+    y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
     y.mechanics.position = x = 0.4 * plant.chambers.stroke
     y.spool.position = spool
     y.chambers.p_a, y.chambers.p_b = p_a + raised, p_b + raised
@@ -74,7 +74,7 @@ def test_the_null_bias_of_a_plant_shifts_with_the_return_pressure():
     plant = PLANTS['smart_manifold']
     jerks = []
     for p_t in (0.0, 3.5e6):
-        y, rates = (row_record(np.zeros(1, PLANT_STATE)) for _ in 'yr')
+        y, rates = (rows_of(1, PLANT_STATE)[0] for _ in 'yr')
         plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, False, rates, False, no_powers())
         jerks.append(rates.spool.acceleration)
     w_n = plant.spool.w_n

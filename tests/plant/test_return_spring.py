@@ -5,7 +5,7 @@ import math
 
 from isa_ros.actuator.ratings import forcing_areas, ratings_of
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.plant import return_spring
@@ -57,7 +57,7 @@ def test_chamber_b_has_the_pressure_of_where_it_is_open(open_to, back, vent):
 def test_at_rest_the_oil_holds_load_and_spring_where_it_starts(position):
     """M5: A_A P_A = F + F_0 + k s + A_B P_B, so that nothing moves; hoses are as their chamber."""
     own = row_record(plant_record(override(single().plant, 'hoses', HOSES)))
-    at = row_record(np.zeros(1, PLANT_STATE))
+    at = rows_of(1, PLANT_STATE)[0]
     at.mechanics.position = position
     rest_oil(own, 14e6, 3e5, 3000.0, at)
     pushed = at.chambers.p_a * AREA - at.chambers.p_b * ROD_SIDE

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.thermal import heat, THERMAL_STATE, warm
 import numpy as np
@@ -22,7 +22,7 @@ def thermal_plant(model: str = 'isa_v5', **changed: float) -> np.record:
 
 
 def state_at(oil: float, body: float) -> np.record:
-    state: np.record = row_record(np.zeros(1, THERMAL_STATE))
+    state: np.record = rows_of(1, THERMAL_STATE)[0]
     state.oil, state.body = oil, body
     return state
 

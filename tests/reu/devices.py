@@ -2,10 +2,9 @@
 
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.device import IMPEDANCE
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import HAS_ENABLE, HAS_MODE
 from isa_ros.reu.cascade import REU_STATE
-import numpy as np
 from tests.sheets import actuator_sheet, override
 
 QUICK_STOPS, DISABLES = 5, 6    # places of these reactions
@@ -26,7 +25,7 @@ def constants(model='isa_v5', **values):
 
 def starting(auto_enable=1):
     """Return the state at t = 0."""
-    state = row_record(np.zeros(1, REU_STATE))
+    state = rows_of(1, REU_STATE)[0]
     own = state.status
     own.auto_enable = own.requested_enable = auto_enable
     own.mode = own.acting = own.requested_mode = IMPEDANCE

@@ -1,7 +1,7 @@
 """States of an REU, for tests of its blocks and of its device."""
 
 from isa_ros.core.device import ENABLED, MODES
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import HAS_ENABLE
 from isa_ros.reu.cascade import REU_STATE
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 
 def enabled_state(reu: np.record, mode: int | None = None) -> np.record:
     """Return an enabled `REU_STATE`, all zero, by default in the outermost mode of the wiring."""
-    state = row_record(np.zeros(1, REU_STATE))
+    state = rows_of(1, REU_STATE)[0]
     own = state.status
     own.state, own.is_on, own.auto_enable = ENABLED, 1, 1
     own.mode = max(k for k in range(len(MODES)) if reu.rules.modes >> k & 1)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from hypothesis import given, strategies as st
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.plant import servo_valve
 from isa_ros.reu import block
 from isa_ros.reu.compensation import dual_gain_compensation, Linear
@@ -28,7 +28,7 @@ LOOP = record()
 
 def state() -> np.record:
     """Return a block at rest."""
-    return row_record(np.zeros(1, block.BLOCK_STATE))
+    return rows_of(1, block.BLOCK_STATE)[0]
 
 
 def step(

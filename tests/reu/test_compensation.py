@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hypothesis import example, given, strategies as st
 from isa_ros.actuator.tunable import refuse_unusable
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.reu import block
 from isa_ros.reu.bumpless import back_calculate
@@ -30,7 +30,7 @@ def row(**changes: object) -> np.record:
 
 def state() -> np.record:
     """Return a block at rest."""
-    return row_record(np.zeros(1, block.BLOCK_STATE))
+    return rows_of(1, block.BLOCK_STATE)[0]
 
 
 @pytest.mark.parametrize(('demand', 'output'), [

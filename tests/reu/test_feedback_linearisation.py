@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hypothesis import given, strategies as st
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.core.signals import MEASURED
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_record
@@ -33,7 +33,7 @@ KNOWN = {model: known(model) for model in MODELS}
 
 def measured(**values: float) -> np.record:
     """Return a `MEASURED` row."""
-    row = row_record(np.zeros(1, MEASURED))
+    row = rows_of(1, MEASURED)[0]
     for name, value in values.items():
         setattr(row, name, value)
     return row
@@ -93,7 +93,7 @@ def test_the_integral_stands_still_at_the_stop():
     sheet = actuator_sheet('isa_v5', 'default', 'feedback_linearisation')
     sheet = replace(sheet, reu=replace(sheet.reu, force=replace(sheet.reu.force, ki_per_s2=1e4)))
     law = row_record(actuator_record(sheet, 0)).reu.linearisation
-    state = row_record(np.zeros(1, block.BLOCK_STATE))
+    state = rows_of(1, block.BLOCK_STATE)[0]
     row = measured(position=0.05, pressure_a=8e6, pressure_b=11e6)
     fl.linearising_step(1e5, row, 0.0, law, state)
     assert state.output == law.limit
@@ -130,7 +130,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
     law, plant = KNOWN[model]
     per_spool = 1.0 if model == 'isa_v5' else 1.0 / plant.valve.k_spool
     row = measured(position=0.5 * plant.chambers.stroke, pressure_a=9e6, pressure_b=9e6)
-    state = row_record(np.zeros(1, block.BLOCK_STATE))
+    state = rows_of(1, block.BLOCK_STATE)[0]
     fl.linearising_step(1.0, row, 0.0, law, state)
     opening = fl.opening_for(law.bandwidth, row, 0.0, law)
     assert state.output == pytest.approx(per_spool * opening, rel=1e-12, abs=0.0)
@@ -140,7 +140,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
 def test_a_rising_force_damps_and_slows_the_load(model):
     """R8, R12: F' = -w K_f dF/dt, and the load moves by dF/dt / K_s less than the piston."""
     law, plant = KNOWN[model]
-    state = row_record(np.zeros(1, block.BLOCK_STATE))
+    state = rows_of(1, block.BLOCK_STATE)[0]
     rate = 1e-3 * chambers.oil_stiffness(0.5 * plant.chambers.stroke, plant.chambers)
     for n in range(1, 200):  # 40 ms: the 100 Hz low-pass of the speed has settled to 1e-11
         force = rate * n * law.period
@@ -160,7 +160,7 @@ def test_compiled_block_equals_its_python_source(reference, force, velocity):
     for law, plant in KNOWN.values():
         row = measured(position=0.4 * plant.chambers.stroke, force=force, pressure_a=9e6,
                        pressure_b=7e6)
-        compiled, python = (row_record(np.zeros(1, block.BLOCK_STATE)) for _ in 'ab')
+        compiled, python = (rows_of(1, block.BLOCK_STATE)[0] for _ in 'ab')
         fl.linearising_step(reference, row, velocity, law, compiled)
         fl.linearising_step.py_func(reference, row, velocity, law, python)
         assert compiled.tobytes() == python.tobytes()

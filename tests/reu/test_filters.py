@@ -2,10 +2,9 @@
 
 import math
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.reu.filters import (
     low_pass, low_pass_coefficient, speed_record, SPEED_STATE, speed_step)
-import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
 
@@ -22,7 +21,7 @@ def test_step_response_is_the_sampled_exponential():
 def test_the_speed_estimate_follows_a_ramp_through_its_filter():
     """R1: a ramp's difference through 100 Hz at 1 kHz settles exponentially to its slope."""
     row = speed_record(actuator_sheet('isa_v5').reu.speed)
-    state = row_record(np.zeros(1, SPEED_STATE))
+    state = rows_of(1, SPEED_STATE)[0]
     for n in range(1, 30):
         speed_step(0.3e-3 * n, row, state)
         expected = 0.3 * (1.0 - math.exp(-2.0 * math.pi * 0.1 * n))
@@ -32,7 +31,7 @@ def test_the_speed_estimate_follows_a_ramp_through_its_filter():
 def test_at_rest_the_estimate_becomes_zero():
     """Not the smallest double, at which a decay ends by rounding; above 1e-30 nothing is cut."""
     row = speed_record(actuator_sheet('isa_v5').reu.speed)
-    state = row_record(np.zeros(1, SPEED_STATE))
+    state = rows_of(1, SPEED_STATE)[0]
     state.velocity = before = 1.0
     share = math.exp(-2.0 * math.pi * 0.1)
     for _ in range(200):

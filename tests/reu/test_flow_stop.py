@@ -3,7 +3,7 @@
 from collections.abc import Callable
 import math
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import row_record, rows_of
 from isa_ros.reu import flow_stop as own
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def setup() -> np.recarray:
 def begun(setup: np.recarray, position: float = 0.05, velocity: float = 0.0,
           force: float = 0.0) -> np.recarray:
     """Return the state of a stop that has begun."""
-    state = row_record(np.zeros(1, own.FLOW_STOP_STATE))
+    state = rows_of(1, own.FLOW_STOP_STATE)[0]
     own.begin_flow_stop(position, velocity, force, setup, state)
     return state
 

@@ -1,8 +1,7 @@
 """The position block as an impedance."""
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.reu import impedance
-import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
 
@@ -11,7 +10,7 @@ LIMITS = impedance.impedance_record(actuator_sheet('isa_v5').reu.position)
 
 def reference(velocity: float = 0.0, measured: float = 0.0, **values: float) -> float:
     """Return the force reference of a setpoint at position 0 and a measured speed."""
-    setpoint = row_record(np.zeros(1, impedance.SETPOINT))
+    setpoint = rows_of(1, impedance.SETPOINT)[0]
     for name, value in values.items():
         setattr(setpoint, name, value)
     setpoint.velocity = velocity

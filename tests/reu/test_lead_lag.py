@@ -4,7 +4,7 @@ import cmath
 from dataclasses import replace
 import math
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.reu import lead_lag
 import numpy as np
@@ -33,7 +33,7 @@ def test_demand_gain_is_equation_2():
 @pytest.mark.parametrize('hz', [10.0, 500.0, 1700.0, 3000.0])
 def test_filter_is_equation_1_by_tustin(hz):
     """R9: C(z) on the unit circle is C(s) at s = c tanh(j w T/2), from the running filter."""
-    state = row_record(np.zeros(1, lead_lag.LEAD_LAG_STATE))
+    state = rows_of(1, lead_lag.LEAD_LAG_STATE)[0]
     w = 2.0 * math.pi * hz * PERIOD
     n = 4000
     # far below saturation: 1 uA times 16 V/mA
@@ -66,7 +66,7 @@ def test_a_notch_beyond_half_the_loop_rate_is_refused():
 
 def test_output_saturates_at_the_supply():
     """24 V, whatever the demand."""
-    state = row_record(np.zeros(1, lead_lag.LEAD_LAG_STATE))
+    state = rows_of(1, lead_lag.LEAD_LAG_STATE)[0]
     assert lead_lag.lead_lag_step(1.0, 0.0, LOOP, state) == 24.0
     assert lead_lag.lead_lag_step(-1.0, 0.0, LOOP, state) == -24.0
 
@@ -78,7 +78,7 @@ def changed(**values: object) -> np.record:
 
 def voltages(loop: np.record, reference: float, measured: float, n: int) -> list[float]:
     """Return the voltages of ``n`` periods from rest under constant currents (A)."""
-    state = row_record(np.zeros(1, lead_lag.LEAD_LAG_STATE))
+    state = rows_of(1, lead_lag.LEAD_LAG_STATE)[0]
     return [lead_lag.lead_lag_step(reference, measured, loop, state) for _ in range(n)]
 
 
@@ -98,7 +98,7 @@ def test_integral_stands_still_at_the_supply():
         for _ in range(50):
             assert lead_lag.lead_lag_step(0.01, 0.0, loop, state) == 24.0
         return float(state.integral)
-    state = row_record(np.zeros(1, lead_lag.LEAD_LAG_STATE))
+    state = rows_of(1, lead_lag.LEAD_LAG_STATE)[0]
     for _ in range(50):  # the lead-lag's own transient leaves saturation once
         lead_lag.lead_lag_step(0.01, 0.0, LOOP, state)
     assert integral_after(changed(ki_v_per_ma_s=100.0)) == 0.0
@@ -119,7 +119,7 @@ def test_compiled_step_equals_its_python_source():
     """A few periods with every term, every state."""
     loop = changed(ki_v_per_ma_s=50.0, kd_v_s_per_ma=1e-4, offset_v=0.1)
     compiled, python = (
-        row_record(np.zeros(1, lead_lag.LEAD_LAG_STATE)) for _ in 'ab')
+        rows_of(1, lead_lag.LEAD_LAG_STATE)[0] for _ in 'ab')
     for measured in (0.0, 1e-4, -3e-4, 2e-3):
         assert (lead_lag.lead_lag_step(1e-3, measured, loop, compiled)
                 == lead_lag.lead_lag_step.py_func(1e-3, measured, loop, python))

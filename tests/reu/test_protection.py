@@ -5,7 +5,7 @@ from dataclasses import replace
 from hypothesis import given, settings, strategies as st
 from isa_ros.core.conditions import BITS, CONDITIONS, conditions, REACTIONS
 from isa_ros.core.parameter import defaults
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import SAMPLE
 from isa_ros.reu import protection
 from isa_ros.reu.protection import GONE, request_clear, TAKEN, write_trips
@@ -269,7 +269,7 @@ def test_the_sample_names_the_last_trip_its_time_and_its_quantity() -> None:
     watched.convert(2)
     watched.show('supply_low', 3e6)
     watched.convert(2)
-    sample = row_record(np.zeros(1, SAMPLE))
+    sample = rows_of(1, SAMPLE)[0]
     write_trips(watched.own, sample)
     assert conditions(sample.last_trip) == ['supply_low']
     assert conditions(sample.first_trip) == ['overload']

@@ -1,7 +1,7 @@
 """What a drive supervises: whether it follows, does not swing, and moves as its valve lets it."""
 
 from isa_ros.core.device import IMPEDANCE, POSITION, SPOOL
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import MEASURED
 from isa_ros.reu import supervision as own
 import numpy as np
@@ -12,7 +12,7 @@ CONSTANTS = Watched(off()).constants.supervision
 
 
 def measured(**values):
-    row = row_record(np.zeros(1, MEASURED))
+    row = rows_of(1, MEASURED)[0]
     row.position, row.pressure_a, row.pressure_b = 0.5 * STROKE, 10e6, 10e6
     for name, value in values.items():
         setattr(row, name, value)
@@ -105,7 +105,7 @@ def test_on_its_way_to_the_reference_a_position_has_no_error(velocity, distance)
 
 def swing(force, reference, hertz=80.0, seconds=0.4):
     """Return the last oscillation of a force and a reference of these amplitudes."""
-    state = row_record(np.zeros(1, own.SUPERVISION_STATE))
+    state = rows_of(1, own.SUPERVISION_STATE)[0]
     for k in range(round(seconds / 1e-4)):
         sine = np.sin(2.0 * np.pi * hertz * k * 1e-4)
         found = own.oscillation(force * sine + 500.0, reference * sine, CONSTANTS, state)

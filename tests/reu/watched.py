@@ -7,14 +7,13 @@ from typing import Any
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import FORCE, IMPEDANCE, POSITION
 from isa_ros.core.parameter import defaults
-from isa_ros.core.record import record, row_record
+from isa_ros.core.record import record, rows_of
 from isa_ros.reu.cascade import REU_STATE
 from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import protect
 from isa_ros.reu.supervision import SUPERVISION
-import numpy as np
 
 STEPS = 5                   # plant steps of a conversion
 PERIOD = STEPS * 20e-6
@@ -62,7 +61,7 @@ class Watched:
             mean_share=PERIOD / (0.05 + PERIOD))
         self._parts = evidence, supervision, STEPS, 0.0, watchdog
         self.become(sheet)
-        self.state = row_record(np.zeros(1, REU_STATE))
+        self.state = rows_of(1, REU_STATE)[0]
         self.own = self.state.protection
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint

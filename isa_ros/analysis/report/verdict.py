@@ -95,23 +95,20 @@ def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:
 def _swings(signals: Signals) -> Iterator[Statement]:
     """Yield forces that go on to swing where the motion has ended, as those of loops that hunt."""
     for own in signals.run.actuators:
-        position = signals.drawn(f'{own.name}.position')
-        if not len(position.t) or not _has_ended(position):
+        t, x = signals.drawn(f'{own.name}.position')
+        if not len(t):
             continue
-        swing = _swing(signals.drawn(f'{own.name}.force'))
-        wanted = _swing(signals.drawn(f'{own.name}.force_reference'))
+        swing, is_blocked = 0.0, np.ptp(x) == 0.0
+        if is_blocked or settling_time(t, x) is not None:
+            swing = _swing(signals.drawn(f'{own.name}.force'))
+        if is_blocked and _swing(signals.drawn(f'{own.name}.force_reference')) > 0.5 * swing:
+            continue    # as it was wanted
         span = own.sheet.plant.sensors.force_range
-        is_blocked = np.ptp(position.values) == 0.0
-        if swing > _RIPPLE * span and not (is_blocked and wanted > 0.5 * swing):
+        if swing > _RIPPLE * span:
             yield Statement(NOTE, (
                 f'Force swings in the last tenth of the time: {own.name} by '
                 f'+-{digits(swing, 3)} {signals.unit(f"{own.name}.force")}, '
                 f'{100.0 * swing / span:.2g} % of the range of its sensor.'))
-
-
-def _has_ended(position: Signal) -> bool:
-    """Return whether an actuator has settled, or never moved."""
-    return np.ptp(position.values) == 0.0 or settling_time(*position) is not None
 
 
 def _swing(signal: Signal) -> float:

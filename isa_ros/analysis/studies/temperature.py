@@ -24,7 +24,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.core.frozen import frozen
 from isa_ros.core.oil_properties import softness, thickness
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.plant import plant_record
@@ -248,13 +248,13 @@ def _standing() -> Iterator[tuple[str, ...]]:
 def _warmed_up(plant: np.record) -> Iterator[float]:
     """Yield the oil's temperature (celsius) at the moments of the table."""
     own = plant.thermal
-    state = row_record(np.zeros(1, THERMAL_STATE))
+    state = rows_of(1, THERMAL_STATE)[0]
     state.oil = state.body = own.start
     for second in range(1, _MOMENTS[-1] + 1):
         flow = leakage_at_null(plant, _SUPPLY, float(thickness(state.oil, own.oil)))
         heat(1.0, flow * _SUPPLY, 0.0, flow, own.supply, own, state)
         if second in _MOMENTS:
-            yield float(state['oil'])
+            yield float(state.oil)
 
 
 STUDY = OwnStudy(NAME, TITLE, results, _table, _numbers, _HEAD, _fill)

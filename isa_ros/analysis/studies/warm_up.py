@@ -9,7 +9,7 @@ temperature after a time is one exact step of T7.
 from collections.abc import Sequence
 
 from isa_ros.core.oil_properties import MineralOil
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.core.units import LPM, MPA
 from isa_ros.scripting.result import Result
 from isa_ros.surroundings.circuits.heat import (
@@ -47,7 +47,7 @@ def heat_of(result: Result, unit: str, power: float, since: float) -> float:
 
 def after(seconds: float, heat: float, cooler: float) -> float:
     """Return the temperature of the oil after a time with a cooler of ``cooler`` W/K, celsius."""
-    oil: np.record = row_record(np.zeros(1, OIL_STATE))
+    oil: np.record = rows_of(1, OIL_STATE)[0]
     oil.celsius = TANK.start_celsius
     ways = ways_of(TANK, [CoolerPart(w_per_k=cooler, coolant_celsius=AIR)])
     warm_oil(seconds, heat * seconds, heat_capacity(TANK), ways, oil, np.zeros(len(ways)))

@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.core.record import row_record
+from isa_ros.core.record import rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.circuits.heat import (
     coldest, heat_capacity, MixedHeat, OIL_STATE, warm_oil)
@@ -40,14 +40,14 @@ def walther(celsius: float) -> float:
 
 def test_walls_and_coolers_find_the_balance() -> None:
     """At rest of all but a loss of 1 kW: theta = (P + sum(G theta_k))/sum(G)."""
-    oil: np.record = row_record(np.zeros(1, OIL_STATE))
+    oil: np.record = rows_of(1, OIL_STATE)[0]
     oil.celsius = 31.0
     given, ways = np.zeros(2), np.array([(3.0, 17.0), (40.0, 12.0)])
     for _ in range(200):
         warm_oil(60.0, 60.0 * 1000.0, CAPACITY, ways, oil, given)
     assert float(oil.celsius) == pytest.approx((1000.0 + 3.0 * 17.0 + 40.0 * 12.0) / 43.0)
     # one step of hours is as exact as many short ones
-    long: np.record = row_record(np.zeros(1, OIL_STATE))
+    long: np.record = rows_of(1, OIL_STATE)[0]
     long.celsius, once = 31.0, np.zeros(2)
     warm_oil(12000.0, 12000.0 * 1000.0, CAPACITY, ways, long, once)
     assert float(long.celsius) == pytest.approx(float(oil.celsius), rel=1e-12)
@@ -57,7 +57,7 @@ def test_walls_and_coolers_find_the_balance() -> None:
 
 def test_without_a_way_all_heat_stays() -> None:
     """T7 with G = 0."""
-    oil: np.record = row_record(np.zeros(1, OIL_STATE))
+    oil: np.record = rows_of(1, OIL_STATE)[0]
     oil.celsius, given = 20.0, np.zeros(1)
     warm_oil(5.0, 700.0, 350.0, np.array([(0.0, 17.0)]), oil, given)
     assert (float(oil.celsius), float(oil.got), given[0]) == (22.0, 700.0, 0.0)
@@ -134,7 +134,7 @@ def test_compiled_is_its_source() -> None:
     """Bit for bit."""
     found = []
     for function in (warm_oil, warm_oil.py_func):
-        oil: np.record = row_record(np.zeros(1, OIL_STATE))
+        oil: np.record = rows_of(1, OIL_STATE)[0]
         oil.celsius, given = 31.0, np.zeros(2)
         function(1e-3, 0.7, 967.1, np.array([(3.0, 17.0), (40.0, 12.0)]), oil, given)
         found.append(oil.tobytes() + given.tobytes())
