@@ -117,7 +117,8 @@ class Controller:
         try:
             arguments.bind(**values)
         except TypeError as error:
-            takes = listed([*arguments.parameters])
+            takes = listed([own.name for own in arguments.parameters.values()
+                            if own.kind in (own.POSITIONAL_OR_KEYWORD, own.KEYWORD_ONLY)])
             raise ConfigError(f'{where}: {cls.__name__} {error}; it takes {takes}') from error
         return cls(**values)
 

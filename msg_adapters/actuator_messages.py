@@ -31,6 +31,8 @@ KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT, DEVICE)
 """(topic suffix, type) of the messages that are kept for later subscriptions."""
 
 TOPICS = (*APPLIED_TOPICS, DEVICE, *STATE_TOPICS)
+APPLIED_PLACE = TOPICS.index(APPLIED_SETPOINT)
+"""Of the applied setpoint among an actuator's messages."""
 
 TEMPERATURE = ('temperature', TEMPERATURE_TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""

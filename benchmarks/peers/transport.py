@@ -19,7 +19,7 @@ from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.options import Request
-from isa_ros.run.output import Outlets
+from isa_ros.run.outlets import Outlets
 from isa_ros.run.session import prepare, record, Report, Session
 from isa_ros.run.wire.answers import Answer, decode_answer
 from isa_ros.run.wire.parts import take_actuator_parts

@@ -6,7 +6,8 @@ from pathlib import Path
 import tempfile
 
 from isa_ros.bag.writer import BagWriter
-from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.simulation import Simulation

@@ -9,7 +9,8 @@ from typing import Any
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.parts import divided, in_turn, Work
 from isa_ros.bench.row import Aim, Row
-from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scripting.run import load, Run

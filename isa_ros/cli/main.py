@@ -55,8 +55,10 @@ class _Parser(argparse.ArgumentParser):
         if unknown and ' ' in self.prog and not self._is_mixed:
             if self._MIXES and self._subparsers is None:
                 self._is_mixed = True       # by which this method is called again
-                found, unknown = self.parse_known_intermixed_args(args, namespace)
-                self._is_mixed = False
+                try:
+                    found, unknown = self.parse_known_intermixed_args(args, namespace)
+                finally:
+                    self._is_mixed = False
             if unknown:
                 self.error(f'unrecognized arguments: {" ".join(unknown)}')
         return found, unknown

@@ -157,7 +157,7 @@ _P = TypeVar('_P', bound=Parameters)
 
 
 def text_of(value: object) -> str:
-    """Return a value as text; of equal sets it is equal, of -0.0 it is not that of 0.0."""
+    """Return a value as text; other numbers have another one, -0.0 than 0.0 and 1 than 1.0 too."""
     return value.as_text if isinstance(value, Parameters) else repr(value)
 
 

@@ -1,7 +1,6 @@
 """Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
-from collections.abc import Collection, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Sequence
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.bound import nothing, Part
@@ -10,51 +9,15 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.buffered import quiet
 from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
-from isa_ros.run.packing import Messages, Packer
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.packing import Packer
+from isa_ros.run.quiet_setpoints import QuietSetpoints
 from isa_ros.run.recorders import Recorder
 from isa_ros.run.row_messages import Names
 from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
 import numpy as np
 from numpy.typing import NDArray
-
-
-class Outlet(Protocol):
-    """The publishers of one source, in the order of its topics."""
-
-    wanted: Collection[int] | None
-    """Places of the messages that `publish` looks at; None: all."""
-
-    def has_subscribers(self) -> bool:
-        """Return whether there is a subscription; called once a tick."""
-        ...
-
-    def publish(self, messages: Messages) -> None:
-        """Publish to the topics with subscriptions, and messages that are kept for later ones."""
-        ...
-
-
-class NoOutlet:
-    """An `Outlet` without topics."""
-
-    wanted: Collection[int] | None = ()
-
-    def has_subscribers(self) -> bool:
-        """Return False."""
-        return False
-
-    def publish(self, messages: Messages) -> None:
-        """Do nothing."""
-
-
-class Outlets(NamedTuple):
-    """The publishers of a run."""
-
-    clock: Outlet = NoOutlet()
-    events: Outlet = NoOutlet()
-    surroundings: Outlet = NoOutlet()
-    actuators: Sequence[Outlet] = ()
-    """One per actuator, in their order; empty if the actuators' own nodes publish."""
 
 
 class RunOutput(RowSink):
@@ -84,6 +47,9 @@ class RunOutput(RowSink):
         self._unrecorded: int | None = None
         self._recorded = 0
         self._applied = b''
+        self._setpoints = QuietSetpoints(
+            packer, outlets.actuators, self._live_actuators) if outlets.actuators else None
+        self._keeps = False
 
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
@@ -98,23 +64,30 @@ class RunOutput(RowSink):
         return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)
 
     def takes_applied(self, expected: NDArray[np.bool_]) -> bool:
-        """Return whether no publisher keeps them; they are recorded."""
+        """Return True: they are recorded, and kept for the publishers of actuators."""
         self._applied = expected.tobytes()
-        return not (self._outlets.actuators and expected.any())
+        self._keeps = bool(expected.any())
+        return True
 
     def begin_quiet(
             self, tick: int, most: int, clock: NDArray[np.int64]) -> tuple[int, Sequence[Part]]:
-        """Record what is packed; return what packs and records, as far as there is room."""
+        """Record what is packed; return what packs, records and keeps, as far as there is room."""
+        parts = []
+        if self._setpoints is not None and self._keeps:
+            places, part = self._setpoints.begin()
+            most, parts = min(most, places), [part]
         if self._recorder is None:
-            return most, ()
+            return most, parts
         self.record()
         layout = self._packer.quiet_layout(self._step_ns, self._applied)
         room = self._recorder.open_stretch(layout, self._stamp(tick + 1), self._step_ns)
-        recording = self._packer.recording(clock, layout, room)
-        return min(most, room.n_ticks), (Part(recording, nothing),)
+        parts.append(Part(self._packer.recording(clock, layout, room), nothing))
+        return min(most, room.n_ticks), parts
 
     def end_quiet(self, tick: int, n_ticks: int) -> None:
-        """Record what was written."""
+        """Record what was written, and publish what is kept."""
+        if self._setpoints is not None and self._keeps:
+            self._setpoints.publish(tick, self._step_ns)
         if self._recorder is not None:
             self._recorder.close_stretch(n_ticks)
             if n_ticks:

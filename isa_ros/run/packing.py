@@ -11,6 +11,7 @@ from isa_ros.bag.message_chunk import Room
 from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.bound import Bound
 from isa_ros.core.record import floats
+from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
 from isa_ros.run.link_packing import LinkWords
@@ -185,6 +186,11 @@ class Packer:
     def topics_of(self, row: int) -> list[Topic]:
         """Return the topics of one actuator, in the order of its messages."""
         return [self.topics[self._index[name]] for name in self._own[row]]
+
+    @property
+    def applied(self) -> Records:
+        """Return the rows of commands that took effect in the last tick, (n,)."""
+        return self._rows.applied
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""

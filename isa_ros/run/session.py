@@ -22,7 +22,8 @@ from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Requests
 from isa_ros.run.options import Request
-from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.pacing import JOINING, Pace, ProgressMeter, RunProgress, STARTING
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning

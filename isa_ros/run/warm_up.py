@@ -16,6 +16,7 @@ from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.output import packer_of
+from isa_ros.run.quiet_setpoints import QuietSetpoints
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 import numpy as np
@@ -44,6 +45,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
         chunk.add(t_ns, 0, packer.all_messages())
     layout = packer.quiet_layout(run.step_ns)
     packer.recording(np.zeros(2, np.int64), layout, chunk.room(layout, 1))
+    QuietSetpoints(packer, (), ())
     return simulation.group.actuators
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from isa_ros.config.assembly import group_of, surroundings_of
-from isa_ros.run.output import Outlets
+from isa_ros.run.outlets import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.tick.calling import calling

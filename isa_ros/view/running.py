@@ -18,7 +18,7 @@ from isa_ros.core.device import state_name
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError, SetpointError
 from isa_ros.run.coordinator import Coordinator, Interrupted
-from isa_ros.run.output import Outlets
+from isa_ros.run.outlets import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.surroundings.surroundings import Surroundings

@@ -5,7 +5,6 @@ import time
 from isa_ros.config.runs.default_actuator import DEFAULT_TIMING
 from isa_ros.core.kernel import IS_COMPILED
 from isa_ros.errors import SimulationDiverged
-from isa_ros.nodes.actuator.node import _APPLIED
 from isa_ros.nodes.lockstep import (
     coordinator_end as lockstep, participant_end as participant, socket_rounds,
     steady_ticks as steady)
@@ -14,6 +13,7 @@ from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.run.wire.board import are_possible
 from isa_ros.run.wire.coordinating import TickRound
 from isa_ros.run.wire.steps import encode_begin, encode_tick, StepKind
+from msg_adapters.actuator_messages import APPLIED_PLACE
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
@@ -207,7 +207,7 @@ def test_what_is_kept_is_published_when_no_message_comes(observer, looped, monke
 
         def applied() -> list[float]:
             return [decode(data, JointState).position[0] for slot, data in [*messages]
-                    if slot == _APPLIED]
+                    if slot == APPLIED_PLACE]
         wait_for(lambda: applied()[-1:] == [command_at(29)], 'the last setpoint')
         robot.transport.close()
     assert max(looped) > 5

@@ -6,7 +6,8 @@ from typing import Any
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.run.coordinator import Coordinator
-from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges

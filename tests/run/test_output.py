@@ -4,7 +4,8 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.run.live import every_tick, PeriodOf
-from isa_ros.run.output import NoOutlet, Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import NoOutlet, Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.packing import Messages, Packer
 from isa_ros.tick.exchange import Rows
 from msg_adapters import clock, event

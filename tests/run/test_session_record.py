@@ -8,7 +8,7 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.run.coordinator import Coordinator, Interrupted
 from isa_ros.run.options import Request
-from isa_ros.run.output import Outlets
+from isa_ros.run.outlets import Outlets
 from isa_ros.run.packing import Packer
 from isa_ros.run.session import prepare, record, save_in_bag
 from isa_ros.run.without_ros import run_without_ros

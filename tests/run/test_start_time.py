@@ -12,7 +12,8 @@ from isa_ros.config.runs.tick_grid import LATEST_START_S
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
-from isa_ros.run.output import Outlets, packer_of, RunOutput
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.session import prepare
 from isa_ros.testing import assert_reproduces
 from isa_ros.tick.exchange import Rows

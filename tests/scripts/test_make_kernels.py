@@ -6,6 +6,7 @@ import io
 from multiprocessing import get_context
 import os
 from pathlib import Path
+import re
 import signal
 import subprocess
 import sys
@@ -161,7 +162,7 @@ def test_ctrl_c_ends_all_at_once(tmp_path):
         stderr=subprocess.PIPE, text=True, start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     assert making.stdout is not None
-    assert making.stdout.readline().startswith('kernels: 0 of 1, ')
+    assert re.match(r'kernels: 0 of \d+, ', making.stdout.readline())
     os.killpg(making.pid, signal.SIGINT)
     said, errors = making.communicate(timeout=60.0)     # until all have closed the pipes
     assert (making.returncode, errors) == (

@@ -12,7 +12,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
 from isa_ros.run.coordinator import Coordinator
 from isa_ros.run.options import Request
-from isa_ros.run.output import Outlets
+from isa_ros.run.outlets import Outlets
 from isa_ros.run.session import prepare, record
 from isa_ros.tick.in_process import InProcess
 from isa_ros.view import running

@@ -10,6 +10,7 @@ tolerance of 1e-13 its solution differs by at most 4e-10 of each state's largest
 
 from collections.abc import Iterator
 import math
+from typing import NamedTuple
 
 from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record
@@ -17,6 +18,7 @@ from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.text.sections import Place
+from isa_ros.core.bound import Bound
 from isa_ros.core.frozen import frozen
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import row_record
@@ -72,11 +74,24 @@ class Difference:
         return f'{self.piece}, {self.load}: {self.state}'
 
 
+class Instant(NamedTuple):
+    """Memory of `write_slopes`: the rows of one actuator."""
+
+    given: np.ndarray
+    """Time since the step's start, s, and current, A, (2,)."""
+    ports: np.ndarray
+    feeds: np.ndarray
+    actuators: np.ndarray
+    bodies: np.ndarray
+    rates: np.ndarray
+
+
 @kernel
-def rates_of_first(tau, drive, ports, feeds, actuators, bodies, rates):
-    """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
-    kernels.write_rates(tau, bodies[0], drive, ports[0], feeds[0], actuators[0], True,
-                        rates[0], True)
+def write_slopes(own):
+    """Write the derivative of the body into the rates; return 0."""
+    kernels.write_rates(own.given[0], own.bodies[0], own.given[1], own.ports[0], own.feeds[0],
+                        own.actuators[0], True, own.rates[0], True)
+    return 0
 
 
 class OpenLoopRig:
@@ -94,7 +109,10 @@ class OpenLoopRig:
         self._port['supply_pressure'], self._feed = SUPPLY, np.zeros(1, SUPPLY_PORT)
         self._plant = row_record(self._constants).plant
         self._own = kernels.integrated(self._port[0], self._feed[0], self._constants[0])
-        _, _, _, self._bodies, self._rates, self._y, self._k = self._own
+        _, _, _, self._bodies, rates, self._y, self._k = self._own
+        self._given = np.zeros(2)
+        self._write_slopes = Bound(write_slopes, Instant(
+            self._given, self._port, self._feed, self._constants, self._bodies, rates)).run
         body = row_record(self._bodies)
         body.supply.pressure = SUPPLY
         body.plant.mechanics.position = body.load.position = middle
@@ -130,9 +148,8 @@ class OpenLoopRig:
         return np.array(rows)
 
     def _slopes(self, tau: float, state: np.ndarray, current: float) -> np.ndarray:
-        self._y[0] = state
-        rates_of_first(tau, current, self._port, self._feed, self._constants, self._bodies,
-                       self._rates)
+        self._y[0], self._given[:] = state, (tau, current)
+        self._write_slopes()
         rates: np.ndarray = self._k[0].copy()
         return rates
 

@@ -8,6 +8,7 @@ from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.plant.plant import plant_record
 from isa_ros.reu.wiring import active
+from isa_ros.text.table import digits
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,7 +29,7 @@ class ReachedLimit(NamedTuple):
 
     def __str__(self) -> str:
         return (f'{self.actuator}: {self.what}, first at t = {self.t_s:.3f} s, '
-                f'{100.0 * self.share:.2g} % of the time')
+                f'{digits(100.0 * self.share, 2)} % of the time')
 
 
 def reached_limits(signals: Signals) -> list[ReachedLimit]:

@@ -3,21 +3,19 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import END, settling_time
+from isa_ros.analysis.report.key_figures import settling_time
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
-from isa_ros.analysis.signals.signals import LARGEST, Signal, Signals
+from isa_ros.analysis.report.swings import stands, swings
+from isa_ros.analysis.signals.signals import LARGEST, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.device import ENABLED, state_name
 from isa_ros.core.suggest import listed
 from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
 from isa_ros.text.table import digits
-import numpy as np
 
 GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
-_RIPPLE = 0.01  # of the range of the force sensor: a larger swing after a motion is told
-_PASSES = 4     # of its middle, from which on a force swings: two periods
 _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
     REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
@@ -74,8 +72,8 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
         t, x = signals.drawn(f'{own.name}.position')
         if not len(t):
             continue
-        settled = settling_time(t, x)
-        word = ('Did not move' if np.ptp(x) == 0.0 else
+        settled = None if stands(own, x) else settling_time(t, x)
+        word = ('Did not move' if stands(own, x) else
                 'Still moving at the end' if settled is None else
                 _word_at_rest(own, bands))
         words.setdefault(word, []).append(
@@ -93,38 +91,9 @@ def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:
 
 
 def _swings(signals: Signals) -> Iterator[Statement]:
-    """Yield forces that go on to swing where the motion has ended, as those of loops that hunt."""
-    for own in signals.run.actuators:
-        t, x = signals.drawn(f'{own.name}.position')
-        if not len(t):
-            continue
-        swing, is_blocked = 0.0, np.ptp(x) == 0.0
-        if is_blocked or settling_time(t, x) is not None:
-            swing = _swing(signals.drawn(f'{own.name}.force'))
-        if is_blocked and _swing(signals.drawn(f'{own.name}.force_reference')) > 0.5 * swing:
-            continue    # as it was wanted
-        span = own.sheet.plant.sensors.force_range
-        if swing > _RIPPLE * span:
-            yield Statement(NOTE, (
-                f'Force swings in the last tenth of the time: {own.name} by '
-                f'+-{digits(swing, 3)} {signals.unit(f"{own.name}.force")}, '
-                f'{100.0 * swing / span:.2g} % of the range of its sensor.'))
-
-
-def _swing(signal: Signal) -> float:
-    """
-    Return half of peak to peak of a signal in the last tenth of the time; 0: it does not swing.
-
-    A swing passes the middle between its extremes again and again, by half of its height on each
-    side: a step or a drift is none, and neither is one pulse.
-    """
-    if not len(signal.t):
-        return 0.0
-    tail = signal.values[signal.t >= signal.t[-1] - END * (signal.t[-1] - signal.t[0])]
-    tail = tail[np.isfinite(tail)]
-    if not len(tail):
-        return 0.0
-    height = 0.5 * float(np.ptp(tail))
-    from_middle = tail - (float(tail.min()) + height)
-    sides = np.sign(from_middle[np.abs(from_middle) > 0.5 * height])
-    return height if np.count_nonzero(np.diff(sides)) >= _PASSES else 0.0
+    """Yield the forces that go on to swing."""
+    for own in swings(signals):
+        yield Statement(NOTE, (
+            f'Force swings in the last tenth of the time: {own.actuator} by '
+            f'+-{digits(own.size, 3)} {signals.unit(f"{own.actuator}.force")}, '
+            f'{digits(100.0 * own.share, 2)} % of the range of its sensor.'))

@@ -29,7 +29,7 @@ from isa_ros.run.packing import Packer
 from isa_ros.run.row_messages import Names, topics_of_actuator
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
-from msg_adapters.actuator_messages import APPLIED_SETPOINT, TOPICS
+from msg_adapters.actuator_messages import APPLIED_PLACE
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
@@ -37,8 +37,6 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
-
-_APPLIED = TOPICS.index(APPLIED_SETPOINT)    # its place among an actuator's messages
 
 
 class NodeSetup(NamedTuple):
@@ -172,7 +170,7 @@ class ActuatorNode(Node):
         for t_ns, command in commands:
             applied[0] = command
             self._packer.pack_numbers(t_ns, t_ns - step_ns)
-            self.outlet.publish(self._packer.of_actuator(0, (_APPLIED,)))
+            self.outlet.publish(self._packer.of_actuator(0, (APPLIED_PLACE,)))
         applied[:] = last
 
     def stamp_from(self, time_ns: int) -> None:

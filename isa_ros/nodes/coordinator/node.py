@@ -14,7 +14,7 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.option import Option
 from isa_ros.run.options import OPTIONS, Request, request_of_parameters
-from isa_ros.run.output import Outlet, Outlets
+from isa_ros.run.outlets import Outlet, Outlets
 from msg_adapters import clock, event
 from msg_adapters.optional import is_installed, TRANSFORMS
 from rcl_interfaces.msg import ParameterDescriptor

@@ -25,7 +25,7 @@ from isa_ros.nodes.middleware.environment import defaults
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.output import Outlet
+from isa_ros.run.outlets import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.roster import Roster

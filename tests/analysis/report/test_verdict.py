@@ -123,12 +123,40 @@ def test_what_is_wanted_of_a_blocked_actuator_is_not_told():
 def test_a_step_a_drift_and_a_pulse_are_no_swings():
     step, pulse = np.where(T > 0.95, SPAN, 0.0), np.where(np.abs(T - 0.95) < 0.02, SPAN, 0.0)
     assert swings(step + 0.001 * WAVE) == swings(SPAN * T) == swings(pulse) == []
-    assert swings(SPAN * T + 2.5 * WAVE) == []      # passes the middle five times, by a little
 
     def pulses(*ticks):
         return np.where(np.isin(np.arange(101), ticks), SPAN, 0.0)
-    assert swings(pulses(93, 97, 98, 99, 100)) == []    # three passes
-    assert len(swings(pulses(93, 97))) == 1             # four
+    assert swings(pulses(93, 97, 98, 99, 100)) == []    # up, down, up
+    assert len(swings(pulses(93, 97))) == 1             # and down
+
+
+@pytest.mark.parametrize('beside', [
+    SPAN * T, -SPAN * T, np.where(T > 0.955, 0.3 * SPAN, 0.0), np.where(T == T[95], SPAN, 0.0)])
+def test_a_swing_is_as_large_beside_a_drift_a_step_and_a_pulse(beside):
+    """Ways of 6 and 4 % of the range in turn; or one way of them all that is longer."""
+    said, = swings(beside + 2.5 * WAVE)
+    assert said.endswith(f'by +-{0.025 * SPAN:.3g} N, 2.5 % of the range of its sensor.')
+
+
+def test_a_swing_of_the_whole_range_is_told_without_an_exponent():
+    said, = swings(150.0 * WAVE)
+    assert said.endswith('150 % of the range of its sensor.')
+
+
+@pytest.mark.parametrize(('factor', 'is_told'), [(8.0, True), (1.0, False)])
+def test_a_loop_that_hunts_on_a_fixture_is_told(factor, is_told):
+    """Its support yields by micrometres, so that the position is no constant."""
+    run = isa_ros.load('rig_linear', {
+        'name': 'pressed', 'duration_s': 0.5, 'loads': {'ram': {'kind': 'blocked'}},
+        'tracks': {'ram': [
+            {'t_s': 0.0, 'mode': 'force', 'position': 'hold', 'effort': 1000.0}]}})
+    kp = run.configuration.actuators[0].sheet.reu.force.kp
+    found = signals_of(run.replace({
+        'actuators.ram.parameters.reu.force.kp': factor * kp}).simulate())
+    assert np.ptp(found['ram.position']) > 0.0
+    said = [own.text for own in verdict(found, [], [], '')]
+    assert 'Did not move: ram.' in said
+    assert any(text.startswith('Force swings in the last tenth') for text in said) is is_told
 
 
 def test_of_another_version_no_limits_are_told():

@@ -1,0 +1,85 @@
+"""Setpoints that quiet ticks apply, for the publishers of actuators in this process."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from isa_ros.core.bound import Bound, nothing, Part
+from isa_ros.core.kernel import kernel
+from isa_ros.core.signals import COMMAND
+from isa_ros.core.topic import KEPT
+from isa_ros.run.live import LivePeriods
+from isa_ros.run.outlets import Outlet
+from isa_ros.run.packing import Packer
+from isa_ros.tick.planned import MOST
+from msg_adapters.actuator_messages import APPLIED_PLACE
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Keeping(NamedTuple):
+    """Memory of `keep_applied`."""
+
+    n: NDArray[np.int64]
+    """Number of ticks that are kept, (1,)."""
+    applied: np.ndarray
+    """`COMMAND` that took effect in the tick, (n_actuators,)."""
+    kept: np.ndarray
+    """Those of each tick, (`MOST`, n_actuators)."""
+
+
+@kernel
+def keep_applied(own):
+    """Keep what took effect in a tick; return 0."""
+    k = own.n[0]
+    for row in range(len(own.applied)):
+        own.kept[k, row] = own.applied[row]
+    own.n[0] = k + 1
+    return 0
+
+
+class QuietSetpoints:
+    """
+    Publishes the applied setpoints of a call of quiet ticks, when it has ended.
+
+    ``outlets`` and their periods ``live`` are those of the actuators whose rows ``packer`` packs.
+    """
+
+    def __init__(
+            self, packer: Packer, outlets: Sequence[Outlet],
+            live: Sequence[LivePeriods]) -> None:
+        self._packer, self._outlets, self._live = packer, outlets, live
+        applied = packer.applied
+        self._own = Keeping(
+            np.zeros(1, np.int64), applied, np.zeros((MOST, len(applied)), COMMAND))
+        self._part = Part(Bound(keep_applied, self._own), nothing)
+
+    def begin(self) -> tuple[int, Part]:
+        """Return for how many ticks there is room, and what keeps their setpoints."""
+        self._own.n[0] = 0
+        return MOST, self._part
+
+    def publish(self, tick: int, step_ns: int) -> None:
+        """
+        Publish what was applied in the ticks after ``tick``.
+
+        Where nobody has subscribed until now, the last ones: a later subscription receives no
+        others.
+        """
+        n = int(self._own.n[0])
+        chosen = {row: self._chosen(row, tick, n)
+                  for row in np.flatnonzero(self._own.kept['kinds'][:n].any(axis=0)).tolist()}
+        last = self._own.applied.copy()
+        for k in sorted(set().union(*chosen.values())):
+            self._own.applied[:] = self._own.kept[k]
+            t_ns = (tick + 1 + k) * step_ns
+            self._packer.pack_numbers(t_ns, t_ns - step_ns)
+            for row, own in chosen.items():
+                if k in own:
+                    self._outlets[row].publish(self._packer.of_actuator(row, (APPLIED_PLACE,)))
+        self._own.applied[:] = last
+
+    def _chosen(self, row: int, tick: int, n: int) -> Sequence[int]:
+        """Return which of ``n`` kept ticks of an actuator to publish."""
+        self._outlets[row].refresh()
+        due = [k for k in range(n) if self._live[row].due(tick + 1 + k, (APPLIED_PLACE,))]
+        return due if self._outlets[row].has_subscribers() else due[-KEPT.depth:]

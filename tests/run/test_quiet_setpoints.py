@@ -1,0 +1,115 @@
+"""Setpoints of quiet ticks: what publishers of this process get of them, and when."""
+
+from isa_ros.core.topic import KEPT, Topic
+from isa_ros.run.live import every_tick
+from isa_ros.run.outlets import Outlets
+from isa_ros.run.output import packer_of, RunOutput
+from isa_ros.run.packing import Messages
+from isa_ros.scripting.run import load
+from isa_ros.tick.planned import MOST
+from msg_adapters.actuator_messages import APPLIED_PLACE
+import pytest
+from tests.tick.quietly import advance
+
+N_TICKS = 150
+PERIOD = 4      # of a topic that is thinned
+
+
+class Publishers:
+    """Those of an actuator; somebody subscribes before a number of looks for subscriptions."""
+
+    wanted = (APPLIED_PLACE,)
+
+    def __init__(self, heard_from: float = float('inf')) -> None:
+        self.left, self.sent = heard_from, []
+        self.is_heard = False
+
+    def refresh(self) -> None:
+        self.left -= 1
+        self.is_heard = self.left <= 0
+
+    def has_subscribers(self) -> bool:
+        return self.is_heard
+
+    def publish(self, messages: Messages) -> None:
+        if messages[APPLIED_PLACE] is not None:
+            self.sent.append(messages[APPLIED_PLACE])
+
+
+def published(pattern, outlets, period_of=every_tick, n_ticks=N_TICKS, recorder=None):
+    """Run a leg that trots by calls of so many ticks; return its single ticks."""
+    simulation = load('leg', scenario='trot_leg').simulation()
+    run = simulation.scenario.run
+    output = RunOutput(packer_of(run, simulation.loop.rows.published), run.step_ns, recorder,
+                       Outlets(actuators=outlets), period_of=period_of)
+    simulation.loop.sinks = (output,)
+    return advance(simulation, n_ticks, pattern)
+
+
+@pytest.fixture(scope='module')
+def each() -> list[list[bytes]]:
+    """Return what is published of each actuator tick by tick."""
+    outlets = [Publishers() for _ in range(3)]
+    assert published((1,), outlets) == N_TICKS
+    found = [own.sent for own in outlets]
+    assert len({message for own in found for message in own}) == sum(map(len, found)) > 300
+    return found
+
+
+def test_without_a_subscription_the_last_of_a_call_are_published(each):
+    """And that of each tick between calls, in their order; kernels took the others."""
+    outlets = [Publishers() for _ in range(3)]
+    assert published((MOST,), outlets) < 10
+    for own, all_of_it in zip(outlets, each):
+        places = [all_of_it.index(message) for message in own.sent]
+        assert places == sorted(places) and len(set(places)) == len(places)
+        assert own.sent[-1] == all_of_it[-1]
+        gaps = [b - a - 1 for a, b in zip(places, places[1:]) if b > a + 1]
+        assert gaps and max(gaps) <= MOST - KEPT.depth
+        end = places[next(k for k, (a, b) in enumerate(zip(places, places[1:])) if b > a + 1)]
+        first = places.index(end + gaps[0] + 1)
+        following = places[first:first + KEPT.depth]
+        assert following == list(range(following[0], following[0] + KEPT.depth))
+
+
+def test_one_that_comes_during_a_call_receives_all_of_it(each):
+    """Of its own actuator; what was published before are the last ones of the calls before."""
+    outlets = [Publishers(), Publishers(2), Publishers()]
+    published((40,), outlets)
+    heard = outlets[1].sent
+    of_first = [each[1].index(message) for message in heard]
+    gaps = [b for a, b in zip(of_first, of_first[1:]) if b > a + 1]
+    assert len(gaps) == 1       # in front of the last ones of the first call
+    assert of_first[-1] == len(each[1]) - 1
+    assert len(outlets[0].sent) < len(heard)
+
+
+def test_a_thinned_topic_is_published_at_its_ticks(each):
+    """The same ones as tick by tick: the last of those that are due."""
+    def period_of(topic: Topic) -> int:
+        return PERIOD if topic.name.endswith('applied_setpoint') else 1
+    single, quiet = ([Publishers(0) for _ in range(3)] for _ in range(2))
+    published((1,), single, period_of)
+    published((30,), quiet, period_of)
+    for one, other, all_of_it in zip(single, quiet, each):
+        assert one.sent == other.sent
+        assert 0 < len(one.sent) <= len(all_of_it) / PERIOD + 1
+
+
+def test_what_is_in_force_afterwards_is_the_last(each):
+    """A tick of Python, and its message, follow what a call has left."""
+    simulation = load('leg', scenario='trot_leg').simulation()
+    run = simulation.scenario.run
+    output = RunOutput(packer_of(run, simulation.loop.rows.published), run.step_ns, None,
+                       Outlets(actuators=[Publishers() for _ in range(3)]))
+    simulation.loop.sinks = (output,)
+    simulation.loop.begin()
+    for _ in range(3):
+        simulation.loop.advance()
+    simulation.loop.advance_quietly(40)
+    other = load('leg', scenario='trot_leg').simulation()
+    other.loop.begin()
+    for _ in range(40):
+        other.loop.advance()
+    assert simulation.ticks == other.ticks == 40
+    assert simulation.loop.rows.applied.tobytes() == other.loop.rows.applied.tobytes()
