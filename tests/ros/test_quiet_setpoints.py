@@ -1,4 +1,4 @@
-"""Setpoints of quiet ticks on the topics of nodes in this process, for subscriptions of any time."""
+"""Setpoints of quiet ticks on topics of nodes in this process, for subscriptions of any time."""
 
 from collections.abc import Iterator
 
