@@ -59,6 +59,8 @@ class RunOutput(RowSink):
     def quiet_ticks(self, tick: int) -> int:
         """Return how many ticks after ``tick`` only have to be packed and recorded."""
         of_all = self._outlets.clock, self._outlets.surroundings, *self._outlets.actuators
+        for outlet in of_all:
+            outlet.refresh()    # a call may last as long as hundreds of ticks
         if any(outlet.has_subscribers() for outlet in of_all) or self._events:
             return 0
         return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)

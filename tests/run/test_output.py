@@ -24,10 +24,14 @@ class FakeOutlet:
 
     def __init__(self, log: list[str], name: str, has_subscription: bool) -> None:
         self.log, self.name, self.has_subscription = log, name, has_subscription
+        self.is_seen = has_subscription
         self.sent: list[Messages] = []
 
+    def refresh(self) -> None:
+        self.is_seen = self.has_subscription
+
     def has_subscribers(self) -> bool:
-        return self.has_subscription
+        return self.is_seen
 
     def publish(self, messages: Messages) -> None:
         self.log.append(self.name)
@@ -66,6 +70,18 @@ class Stage:
         packer = packer_of(RUN, self.rows.published)
         packer.pack(tick * STEP_NS, max(0, (tick - 1) * STEP_NS), tuned or {})
         return packer
+
+
+@pytest.mark.parametrize('name', ['clock', 'surroundings', 'hip', 'knee'])
+def test_a_subscription_is_seen_before_the_next_call_of_quiet_ticks(name):
+    """And so is its end; those of events are looked at when there is one."""
+    stage = Stage()
+    outlet = stage.outlets[name]
+    assert stage.output.quiet_ticks(0) > 100
+    outlet.has_subscription = True
+    assert stage.output.quiet_ticks(200) == 0
+    outlet.has_subscription, stage.outlets['events'].has_subscription = False, True
+    assert stage.output.quiet_ticks(200) > 100
 
 
 EVERYONE = ('clock', 'events', 'surroundings', 'hip', 'knee')
