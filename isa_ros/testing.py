@@ -25,13 +25,15 @@ same versions. Both functions may also be imported and called.
 """
 
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
+from typing import Any, cast, TypeVar
 
 from isa_ros.bag.provenance import CONFIGURATION, VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.recorded_run import recorded_run
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.errors import BagError, SimulationDiverged
+from isa_ros.errors import BagError, ConfigError, SimulationDiverged
 from isa_ros.replay.compare import Comparer, is_of_end, retyped
 from isa_ros.replay.comparison import Comparison, key_lines
 from isa_ros.replay.difference import RunDifference
@@ -52,6 +54,7 @@ import pytest
 __all__ = ['assert_no_trips', 'AssertNoTrips', 'assert_replays', 'AssertReplays',
            'assert_reproduces', 'AssertReproduces']
 
+_Check = TypeVar('_Check', bound=Callable[..., None])
 AssertNoTrips = Callable[..., None]
 AssertReplays = Callable[..., None]
 AssertReproduces = Callable[..., None]
@@ -59,6 +62,19 @@ AssertReproduces = Callable[..., None]
 _NAMES = ('in the bag', 'now')  # of both runs in a message
 
 
+def _without_inner_frames(check: _Check) -> _Check:
+    """Return a check that shows the line of a bag or file that cannot be used, and no frames."""
+    @wraps(check)
+    def shown(*arguments: Any, **named: Any) -> None:
+        __tracebackhide__ = True
+        try:
+            check(*arguments, **named)
+        except (BagError, ConfigError) as error:
+            raise error.with_traceback(None)
+    return cast(_Check, shown)
+
+
+@_without_inner_frames
 def assert_no_trips(run: Result | Path | str) -> None:
     """
     Assert that no condition of an actuator tripped in a run: its result, or its bag.
@@ -85,6 +101,7 @@ def assert_no_trips(run: Result | Path | str) -> None:
         raise AssertionError('\n'.join([f'{name}: a condition tripped', *tripped.lines()]))
 
 
+@_without_inner_frames
 def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> None:
     """
     Simulate a bag again, with its own configuration and inputs, and compare every message.
@@ -110,6 +127,7 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
         raise AssertionError('\n'.join(lines))
 
 
+@_without_inner_frames
 def assert_reproduces(
         config: str | Path | Tree, scenario: str | Path | Tree | None, bag: Path | str,
         tolerances: Path | str | None = None, controllers: Controllers = (), *,

@@ -55,6 +55,23 @@ def project(pytester, here):
     return pytester
 
 
+def test_a_bag_that_is_missing_is_one_line_without_the_frames_of_its_reader(project):
+    """And a file: a user's own frames stay."""
+    project.makepyfile(
+        BITWISE, test_file="""
+        def own(assert_reproduces):
+            assert_reproduces('no.yaml', None, 'bags/drop')
+
+        def test_it(assert_reproduces):
+            own(assert_reproduces)
+        """)
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=2)
+    text = '\n'.join(result.outlines)
+    assert 'BagError: bags/drop' in text and 'isa_ros/bag' not in text
+    assert text.count('def own(assert_reproduces)') == 1
+
+
 def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
     """Change the last number of one message by less than the tolerances below."""
     if (topic, sequence) != ('/rotor/load_cell', EFFORT_TICK):

@@ -147,8 +147,7 @@ def bode(options: Namespace) -> bool:
 def step(options: Namespace) -> bool:
     """Measure the step response of a loop."""
     from isa_ros.analysis.response.command import step as measure_step
-    measure_step(options)
-    return True
+    return measure_step(options)
 
 
 def tune(options: Namespace) -> bool:

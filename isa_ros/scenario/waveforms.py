@@ -44,7 +44,7 @@ class SetpointMotion(Protocol):
         ...
 
     def reach(self) -> tuple[Excursion, Excursion]:
-        """Return the least and the greatest position and effort that it ever has."""
+        """Return the least and the greatest position, velocity and effort that it ever has."""
         ...
 
     def tree(self) -> Tree:
@@ -67,9 +67,16 @@ class Waveform(Parameters, ABC):
         return as_tree(self)
 
     def reach(self) -> tuple[Excursion, Excursion]:
-        """Return the least and the greatest excursion, without their velocities."""
-        low, high = self.ENDS if self.amplitude >= 0.0 else self.ENDS[::-1]
-        return self._excursion(low, 0.0), self._excursion(high, 0.0)
+        """Return the least and the greatest excursion; each has extremes of different times."""
+        least, greatest = zip(self.ENDS, self._rates)
+        if self.amplitude < 0.0:
+            least, greatest = greatest, least
+        return self._excursion(*least), self._excursion(*greatest)
+
+    @property
+    def _rates(self) -> tuple[float, float]:
+        """Return the least and the greatest rate that is commanded, amplitudes per second."""
+        return 0.0, 0.0
 
     @abstractmethod
     def at(self, t_ns: int) -> Excursion:
@@ -100,6 +107,11 @@ class Sine(Waveform):
 
     frequency_hz: float = parameter('frequency', 'Hz', gt=0.0, le=5e3)
 
+    @property
+    def _rates(self) -> tuple[float, float]:
+        omega = TWO_PI * self.frequency_hz
+        return -omega, omega
+
     def at(self, t_ns: int) -> Excursion:
         """Return A sin(omega t) and A omega cos(omega t)."""
         omega = TWO_PI * self.frequency_hz
@@ -126,6 +138,11 @@ class Chirp(Waveform):
         if self.start_hz == self.end_hz:
             raise ParameterError(
                 f'Chirp.end_hz = {self.end_hz:g} Hz, must differ from start_hz (else: sine)')
+
+    @property
+    def _rates(self) -> tuple[float, float]:
+        omega = TWO_PI * max(self.start_hz, self.end_hz)
+        return -omega, omega
 
     def phase(self, t: float) -> tuple[float, float]:
         """
@@ -189,6 +206,10 @@ class Way(Waveform):
     ENDS = (0.0, 1.0)
 
     duration_s: float = parameter('time to the amplitude', 's', gt=0.0, le=1e5)
+
+    @property
+    def _rates(self) -> tuple[float, float]:
+        return 0.0, 1.0 / self.duration_s
 
     def at(self, t_ns: int) -> Excursion:
         """Return A t/T and A/T, from T on A and 0."""

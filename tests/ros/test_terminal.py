@@ -94,6 +94,11 @@ def test_parameters_are_set_at_once_and_shown(
     ('reu.force.kp=-3', 'isa: /lab/ram: reu.force.kp = -3, must be 0 to 3.64544e-05: prop'),
     ('reu.force.kp=abc', 'isa: /lab/ram: reu.force.kp = abc, must be a number: '),
     ('reu.force.kpp=3', 'parameter reu.force.kpp is unknown; did you mean reu.force.kp'),
+    ('plant.drive.bore_mm=50', 'parameter plant.drive.bore_mm does not change during a run'),
+    ('plant.drive.bore=50', 'parameter plant.drive.bore is unknown'),
+    ('plant.drive', 'parameter plant.drive is unknown'),
+    ('=3', "'=3': must be KEY=VALUE, or KEY to read it"),
+    ('reu.force.kp=', 'isa: /lab/ram: reu.force.kp = nothing, must be a number: '),
     ('reu.force.kp={a: 1}', 'isa: reu.force.kp = {a: 1}: not a value of a parameter'),
 ])
 def test_a_parameter_that_cannot_be_set_is_2(
@@ -146,6 +151,18 @@ def test_so_many_messages_are_printed(ram: str, capsys: pytest.CaptureFixture[st
 def test_kept_messages_are_echoed_too(ram: str, capsys: pytest.CaptureFixture[str]) -> None:
     """Of a publisher that is silent since: its device's status."""
     assert 'ram' in printed(capsys, 'echo', f'{ram}/applied_setpoint', '--count', '1')
+
+
+def test_of_messages_that_are_kept_the_last_ones_are_printed(
+        ram: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whatever the device does with them: of those before nothing is shown."""
+    for position in ('0.0311', '0.0312', '0.0313'):
+        main(['command', ram, position])
+    capsys.readouterr()
+    for count, expected in (('1', [0.0313]), ('2', [0.0312, 0.0313])):
+        told = yaml.safe_load_all(
+            printed(capsys, 'echo', f'{ram}/applied_setpoint', '--count', count))
+        assert [own['position'][0] for own in told if own] == expected
 
 
 def test_an_empty_domain_says_so(

@@ -29,7 +29,12 @@ BEYOND = [
     (QUARTER, 'tracks.knee[0].sine: position = -0.01 m, must be 0 to 0.1 m, the stroke; '),
     ('  - {t_s: 0, position: 0.05, effort: 100, pulse: {moves: effort, amplitude: 7500, '
      'period_s: 0.1, width_s: 0.01}}\n',
-     'tracks.knee[0].pulse: effort = 7600 N, must be -5174 to 7500 N, the rated force; ')]
+     'tracks.knee[0].pulse: effort = 7600 N, must be -5174 to 7500 N, the rated force; '),
+    # 0.03 x 2 pi 20 Hz, in one direction or the other first
+    ('  - {t_s: 0, position: 0.05, sine: {amplitude: 0.03, frequency_hz: 20.0}}\n',
+     'tracks.knee[0].sine: velocity = -3.76991 m/s, must be -1.66859 to 1.66859 m/s, the sp'),
+    ('  - {t_s: 0, position: 0.05, velocity: 0.1, ramp: {amplitude: 0.03, duration_s: 0.01}}\n',
+     'tracks.knee[0].ramp: velocity = 3.1 m/s, must be -1.66859 to 1.66859 m/s, the speed')]
 
 
 def read(tracks: str, run: RunConfig = RUN, more: str = '') -> Scenario:
@@ -67,7 +72,7 @@ def test_it_is_limited_where_configured_and_the_scenario_says_so(
     for tick in range(2000):
         row = knee(scenario, tick)
         assert 0.0 <= row['position'] <= STROKE and row['effort'] <= RATED
-        assert not row['stiffness'] > 5e7
+        assert not row['stiffness'] > 5e7 and abs(row['velocity']) < 1.6686
         assert row.tobytes() == knee(again, tick).tobytes()
 
 

@@ -72,10 +72,31 @@ def test_a_ramp_goes_at_one_rate_and_stays() -> None:
         assert way.at(2000 * MS) == way.at(10**13) == (amplitude, 0.0, 0.0)
         low, high = sorted((0.0, amplitude))
         assert [end.position for end in way.reach()] == [low, high]
+        assert [end.velocity for end in way.reach()] == [0.5 * low, 0.5 * high]
     force = Way(moves='effort', amplitude=40.0, duration_s=4.0)
     assert force.at(3000 * MS) == (0.0, 0.0, 30.0)
     with pytest.raises(ConfigError, match='ramp.duration_s = 4 s, must be '):
         force.refuse_step(3 * MS, 'ramp')
+
+
+@pytest.mark.parametrize('amplitude', [0.3, -0.3])
+@pytest.mark.parametrize('frequencies', [{'frequency_hz': 4.0}, (1.0, 4.0), (4.0, 0.5)])
+def test_a_wave_is_at_most_as_fast_as_at_its_highest_frequency(
+        amplitude: float, frequencies: dict[str, float] | tuple[float, float]) -> None:
+    """No instant is faster, and one is as fast; of an effort no speed is commanded."""
+    def wave(moves: str) -> Sine | Chirp:
+        if isinstance(frequencies, dict):
+            return Sine(moves=moves, amplitude=amplitude, **frequencies)
+        start, end = frequencies
+        return Chirp(moves=moves, amplitude=amplitude, start_hz=start, end_hz=end, duration_s=3.0,
+                     sweep='linear')
+    low, high = wave('position').reach()
+    assert (low.position, high.position) == (-0.3, 0.3)
+    assert (low.velocity, high.velocity) == pytest.approx((-0.3 * 25.1327, 0.3 * 25.1327), 1e-5)
+    speeds = [wave('position').at(k * MS).velocity for k in range(4000)]
+    assert low.velocity <= min(speeds) and max(speeds) <= high.velocity
+    assert max(map(abs, speeds)) > 0.99 * high.velocity
+    assert [own[:2] for own in wave('effort').reach()] == [(0.0, 0.0)] * 2
 
 
 def test_a_pulse_is_up_for_its_width_in_every_period() -> None:

@@ -122,8 +122,13 @@ def key_rows(signals: Signals) -> list[Cells]:
     return [HEADER, *(_row(signals, own) for own in signals.run.actuators)]
 
 
+def shown_position(own: ActuatorConfig) -> tuple[float, str]:
+    """Return by what a position in m or rad is multiplied for readers, and its unit then."""
+    return (float(np.degrees(1.0)), 'deg') if own.sheet.is_rotary else (1 / MILLI, 'mm')
+
+
 def _row(signals: Signals, own: ActuatorConfig) -> Sequence[str]:
-    scale, unit = (float(np.degrees(1.0)), 'deg') if own.sheet.is_rotary else (1 / MILLI, 'mm')
+    scale, unit = shown_position(own)
 
     def of(field: str) -> Floats:
         return signals.drawn(f'{own.name}.{field}').values

@@ -1,10 +1,11 @@
 """Results of a run as a table of text: motion, force, pressure, settling and oil."""
 
 from isa_ros.analysis.report.ground import upward_forces
-from isa_ros.analysis.report.key_figures import pressure_range, settling_time
+from isa_ros.analysis.report.key_figures import (
+    pressure_range, settling_time, shown_position)
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.core.units import LITRE, MILLI
+from isa_ros.core.units import LITRE
 from isa_ros.text.table import aligned, digits
 import numpy as np
 
@@ -24,7 +25,7 @@ def outcome(signals: Signals) -> str:
 def _row(signals: Signals, own: ActuatorConfig) -> tuple[str, ...]:
     name = own.name
     t, x = signals.over_time(f'{name}.position')
-    scale, unit = (np.degrees(1.0), 'deg') if own.sheet.is_rotary else (1.0 / MILLI, 'mm')
+    scale, unit = shown_position(own)
     force = np.abs(signals[f'{name}.force']).max()
     oil = signals[f'{name}.supply_volume'][-1] / LITRE
     settled = settling_time(t, x)

@@ -3,16 +3,17 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import settling_time
+from isa_ros.analysis.report.key_figures import END, SETTLED, settling_time, shown_position
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
-from isa_ros.analysis.report.swings import stands, swings
-from isa_ros.analysis.signals.signals import LARGEST, Signals
+from isa_ros.analysis.report.swings import stood, swings
+from isa_ros.analysis.signals.signals import LARGEST, Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.device import ENABLED, state_name
 from isa_ros.core.suggest import listed
 from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
 from isa_ros.text.table import digits
+import numpy as np
 
 GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
@@ -20,6 +21,7 @@ _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
     REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
+_MOVES = 'Moving at the end, as its reference'
 _SETTLED, _ON = 'Settled', state_name(ENABLED)
 
 
@@ -66,21 +68,35 @@ def _told(word: str, grade: str, events: Sequence[Event]) -> Iterator[Statement]
 
 
 def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
-    """Yield which actuators stood still, settled, or still move at the end, and by what device."""
+    """Yield which actuators stood, settled, or still move at the end, and by what device."""
     words: dict[str, list[str]] = {}
     for own in signals.run.actuators:
-        t, x = signals.drawn(f'{own.name}.position')
+        position = signals.drawn(f'{own.name}.position')
+        t, x = position
         if not len(t):
             continue
-        settled = None if stands(own, x) else settling_time(t, x)
-        word = ('Did not move' if stands(own, x) else
-                'Still moving at the end' if settled is None else
-                _word_at_rest(own, bands))
-        words.setdefault(word, []).append(
-            own.name if settled is None else f'{own.name} at t = {settled:.3f} s')
+        settled, who = settling_time(t, x), own.name
+        if np.ptp(x) == 0.0:
+            word = 'Did not move'
+        elif stood(own, x):
+            word, (scale, unit) = 'Stood', shown_position(own)
+            who = f'{own.name} within {digits(scale * float(np.ptp(x)), 2)} {unit}'
+        elif settled is not None:
+            word, who = _word_at_rest(own, bands), f'{own.name} at t = {settled:.3f} s'
+        else:
+            word = (_MOVES if _goes_on(position, signals.drawn(f'{own.name}.position_reference'))
+                    else 'Still moving at the end')
+        words.setdefault(word, []).append(who)
     for word in sorted(words):
-        is_good = word in ('Did not move', _SETTLED)
+        is_good = word in ('Did not move', 'Stood', _SETTLED, _MOVES)
         yield Statement(GOOD if is_good else NOTE, f'{word}: {", ".join(words[word])}.')
+
+
+def _goes_on(position: Signal, reference: Signal) -> bool:
+    """Return whether the reference moves in the last tenth of the time, and so is to be left."""
+    t = reference.t
+    tail = reference.values[t >= t[-1] - END * (t[-1] - t[0])] if len(t) else reference.values
+    return bool(len(tail) and np.ptp(tail) > SETTLED * np.ptp(position.values))
 
 
 def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:
@@ -95,5 +111,6 @@ def _swings(signals: Signals) -> Iterator[Statement]:
     for own in swings(signals):
         yield Statement(NOTE, (
             f'Force swings in the last tenth of the time: {own.actuator} by '
-            f'+-{digits(own.size, 3)} {signals.unit(f"{own.actuator}.force")}, '
+            f'+-{digits(own.size, 3)} {signals.unit(f"{own.actuator}.force")} at '
+            f'{own.hertz:.3g} Hz, '
             f'{digits(100.0 * own.share, 2)} % of the range of its sensor.'))

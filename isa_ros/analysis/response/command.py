@@ -62,8 +62,8 @@ def bode(options: Namespace) -> bool:
     return not any(measured.rest.hunts for measured in responses)
 
 
-def step(options: Namespace) -> None:
-    """Measure step responses."""
+def step(options: Namespace) -> bool:
+    """Measure step responses; False: an output does not follow its step."""
     refuse_figure(options.out)
     benches = members(options)
     duration = options.duration or DURATIONS[benches[0].rig.loop.name]
@@ -82,6 +82,7 @@ def step(options: Namespace) -> None:
         return step_figure(responses, [label for label, _ in benches],
                            title if len(benches) == 1 else f'{options.loop}: step')
     _write(options, found, figure)
+    return all(measured.follows for measured in responses)
 
 
 def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:

@@ -28,6 +28,12 @@ class StepResponse:
     inward: np.ndarray | None
     figures: StepFigures
 
+    @property
+    def follows(self) -> bool:
+        """Return whether error and ripple at the end are within `LOST` of the step."""
+        end = max(abs(self.figures.steady_error), self.figures.ripple)
+        return end <= LOST * abs(self.amplitude)
+
 
 def step(rig: Rig, duration: float, amplitude: float | None = None) -> StepResponse:
     """
@@ -108,7 +114,7 @@ def summary(measured: StepResponse) -> str:
         f'steady error, mean of the last tenth: {found.steady_error / unit.scale:.3g} '
         f'{unit.symbol}',
         f'ripple, deviation over the last tenth: {found.ripple / unit.scale:.3g} {unit.symbol}']
-    if max(abs(found.steady_error), found.ripple) > LOST * abs(measured.amplitude):
+    if not measured.follows:
         lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '
                      'loop does not follow, or the recording is too short')
     return '\n'.join(lines)

@@ -14,6 +14,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 import yaml
 
 _DEPTH = 100            # messages that may wait to be printed
+_BACKLOG_S = 0.2        # after the first of the messages that are kept, until all are there
 _WIDTH = 1_000_000      # characters: no line of a number list is broken
 _TYPE_PARTS = 3         # package/msg/Type
 
@@ -41,6 +42,8 @@ def echo(topic: str, count: int | None, timeout_s: float,
     """
     Print so many messages of a topic, None: without end.
 
+    Of more that are kept for a later subscription they are the last ones.
+
     Raises
     ------
     RunError
@@ -54,8 +57,13 @@ def echo(topic: str, count: int | None, timeout_s: float,
         if not visitor.wait(lambda: name in _published(visitor)):
             raise not_found('topic', name, list(_published(visitor)), visitor.seconds)
         arrived: list[Any] = []
+        quality = _quality(visitor, name)
         visitor.node.create_subscription(
-            message_type(_published(visitor)[name]), name, arrived.append, _quality(visitor, name))
+            message_type(_published(visitor)[name]), name, arrived.append, quality)
+        if count is not None and quality.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+            visitor.wait(lambda: arrived)
+            visitor.wait(lambda: False, _BACKLOG_S)     # the oldest come first
+            del arrived[:-count]
         for _ in islice(iter(int, 1), count):
             if not visitor.wait(lambda: arrived):
                 raise RunError(f'topic {name}: no message within {visitor.seconds}')

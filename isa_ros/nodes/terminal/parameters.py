@@ -3,6 +3,10 @@
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from isa_ros.config.models.catalogue import model_names
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.core.frozen import fields_of
+from isa_ros.core.parameter import Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, one_line
 from isa_ros.nodes.terminal.visitor import absolute, visiting, Visitor
@@ -21,8 +25,18 @@ class ParameterChange(NamedTuple):
 
 
 def change_of(text: str) -> ParameterChange:
-    """Return what KEY=VALUE or KEY asks for."""
+    """
+    Return what KEY=VALUE or KEY asks for.
+
+    Raises
+    ------
+    ConfigError
+        There is no key.
+
+    """
     name, sign, value = text.partition('=')
+    if not name.strip():
+        raise ConfigError(f'{text!r}: must be KEY=VALUE, or KEY to read it')
     return ParameterChange(name, value if sign else None)
 
 
@@ -58,7 +72,7 @@ def set_parameters(node: str, changes: Sequence[ParameterChange], timeout_s: flo
 
 def _parameter(change: ParameterChange) -> Parameter:
     try:
-        value = yaml.safe_load(change.text or '')
+        value = yaml.safe_load(change.text or "''")
         return Parameter(change.name, value=_number(value))
     except (yaml.YAMLError, TypeError, AttributeError):
         raise ConfigError(f'{change.name} = {change.text}: not a value of a parameter') from None
@@ -81,7 +95,7 @@ def _beyond(visitor: Visitor, path: str, wanted: Sequence[Parameter]) -> str:
     for own, known in zip(wanted, described):
         needed = needed_of(own.value, known)
         if needed:
-            return f'{own.name} = {own.value}, must be {needed}'
+            return f'{own.name} = {own.value if own.value != "" else "nothing"}, must be {needed}'
     return ''
 
 
@@ -107,9 +121,22 @@ def _values(visitor: Visitor, path: str, changes: Sequence[ParameterChange]) -> 
                        ListParameters.Request()).result.names
         for name in names:
             if name not in known:
-                raise ConfigError(
-                    f'{path}: parameter {name} is unknown; {alternatives(name, known)}')
+                raise ConfigError(f'{path}: parameter {name} ' + (
+                    'does not change during a run; it is a key of the run file, and of --set'
+                    if _is_key(name) else f'is unknown; {alternatives(name, known)}'))
     return [parameter_value_to_python(value) for value in found]
+
+
+def _is_key(name: str) -> bool:
+    """Return whether a packaged model has such a parameter."""
+    for model in model_names():
+        own: Any = default_actuator(model, model).sheet
+        for part in name.split('.'):
+            own = getattr(own, part, None) if isinstance(own, Parameters) and part in {
+                field.name for field in fields_of(type(own))} else None
+        if own is not None and not isinstance(own, Parameters):
+            return True
+    return False
 
 
 def _asked(visitor: Visitor, path: str, service: str, kind: Any, request: Any) -> Any:

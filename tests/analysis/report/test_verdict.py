@@ -73,6 +73,28 @@ def test_what_settles_is_told_apart_from_what_moves():
     assert texts(moves, NOTE) == ['Still moving at the end: ram.']
 
 
+def test_what_stands_is_not_said_to_move():
+    """By less than a thousandth of the stroke; a sensor's last digits never settle."""
+    stroke = SHEET.plant.drive.stroke
+    for share, said in ((0.9e-3, 'Stood: ram within 0.09 mm.'),
+                        (1.1e-3, 'Still moving at the end: ram.')):
+        found = verdict(signals(position=0.04 + share * stroke * T), [], [], '')
+        assert [own.text for own in found if 'ram' in own.text] == [said]
+        assert (found[-1].grade == GOOD) is said.startswith('Stood')
+
+
+def test_what_follows_a_motion_that_goes_on_is_not_blamed():
+    """A reference that stands in the last tenth, or is not known, explains nothing."""
+    wave = 0.04 + 0.01 * np.sin(2.0 * np.pi * 2.0 * T)
+
+    def told(reference):
+        return verdict(signals(position=wave, position_reference=reference), [], [], '')[-1]
+    assert told(wave) == (GOOD, 'Moving at the end, as its reference: ram.')
+    stands = np.where(T < 0.85, wave, 0.04)
+    assert told(stands) == (NOTE, 'Still moving at the end: ram.')
+    assert told(np.full(101, np.nan)).text == 'Still moving at the end: ram.'
+
+
 def test_what_came_to_rest_and_is_off_at_the_end_has_not_settled():
     """A device that was off before, or another one, does not count."""
     own = signals(position=0.05 - 0.01 * np.exp(-T / 0.05))
@@ -102,12 +124,13 @@ def swings(force, position=REST, **more):
 
 def test_a_force_that_swings_where_the_motion_has_ended_is_told():
     """A square wave about 2 kN, and one of a blocked actuator."""
-    expected = [f'Force swings in the last tenth of the time: ram by +-{0.0101 * SPAN:.3g} N, 1 % '
-                'of the range of its sensor.']
+    expected = [f'Force swings in the last tenth of the time: ram by +-{0.0101 * SPAN:.3g} N at 50 '
+                'Hz, 1 % of the range of its sensor.']
     blocked = np.full(101, 0.04)
     assert swings(2e3 + 1.01 * WAVE) == swings(1.01 * WAVE, blocked) == expected
     gap = np.where(np.arange(101) == 95, np.nan, 1.01 * WAVE)
-    assert swings(gap) == expected
+    assert [text.partition(' at ')[0] for text in swings(gap)] == [
+        expected[0].partition(' at ')[0]]
     assert swings(0.99 * WAVE) == swings(0.99 * WAVE, blocked) == []
     assert swings(9.0 * WAVE, 0.04 + 0.01 * T) == []                # it moves
     assert swings(np.where(T < 0.85, 9.0, 0.5) * WAVE) == []        # it has ended
@@ -135,7 +158,8 @@ def test_a_step_a_drift_and_a_pulse_are_no_swings():
 def test_a_swing_is_as_large_beside_a_drift_a_step_and_a_pulse(beside):
     """Ways of 6 and 4 % of the range in turn; or one way of them all that is longer."""
     said, = swings(beside + 2.5 * WAVE)
-    assert said.endswith(f'by +-{0.025 * SPAN:.3g} N, 2.5 % of the range of its sensor.')
+    assert f' by +-{0.025 * SPAN:.3g} N at ' in said
+    assert said.endswith(' Hz, 2.5 % of the range of its sensor.')
 
 
 def test_a_swing_of_the_whole_range_is_told_without_an_exponent():
@@ -155,7 +179,7 @@ def test_a_loop_that_hunts_on_a_fixture_is_told(factor, is_told):
         'actuators.ram.parameters.reu.force.kp': factor * kp}).simulate())
     assert np.ptp(found['ram.position']) > 0.0
     said = [own.text for own in verdict(found, [], [], '')]
-    assert 'Did not move: ram.' in said
+    assert any(text.startswith('Stood: ram within 0.') for text in said)
     assert any(text.startswith('Force swings in the last tenth') for text in said) is is_told
 
 

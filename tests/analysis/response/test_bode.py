@@ -236,10 +236,18 @@ def test_a_frequency_without_coherence_is_marked_and_left_out(capsys):
 
 def test_a_step_that_is_not_followed_is_said_so():
     """Torque against a free mass cannot be held, since the mass yields."""
-    stopped = summary(step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0))
-    assert 'does not follow' not in stopped
-    lost = summary(step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.06, 7000.0))
-    assert 'does not follow' in lost
+    stopped = step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0)
+    assert 'does not follow' not in summary(stopped) and stopped.follows
+    lost = step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.06, 7000.0)
+    assert 'does not follow' in summary(lost) and not lost.follows
+
+
+def test_a_command_whose_step_is_not_followed_answers_no(capsys):
+    """One that hunts: its ripple is larger than half of the step."""
+    sound = ['step', 'isa_v5', '--loop', 'force', '--duration', '0.1']
+    assert cli.main([*sound, '--set', 'reu.force.kp=1.6e-5']) == 1
+    assert 'the loop does not follow' in capsys.readouterr().out
+    assert cli.main(sound) == 0
 
 
 def test_a_valve_with_hysteresis_is_told_beside_its_response(measured):
