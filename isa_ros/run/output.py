@@ -47,8 +47,8 @@ class RunOutput(RowSink):
         self._unrecorded: int | None = None
         self._recorded = 0
         self._applied = b''
-        self._setpoints = QuietSetpoints(
-            packer, outlets.actuators, self._live_actuators) if outlets.actuators else None
+        self._setpoints = (
+            QuietSetpoints(packer, outlets.actuators) if outlets.actuators else None)
         self._keeps = False
 
     def take_time(self, tick: int) -> None:

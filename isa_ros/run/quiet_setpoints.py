@@ -7,7 +7,6 @@ from isa_ros.core.bound import Bound, nothing, Part
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.topic import KEPT
-from isa_ros.run.live import LivePeriods
 from isa_ros.run.outlets import Outlet
 from isa_ros.run.packing import Packer
 from isa_ros.tick.planned import MOST
@@ -41,13 +40,13 @@ class QuietSetpoints:
     """
     Publishes the applied setpoints of a call of quiet ticks, when it has ended.
 
-    ``outlets`` and their periods ``live`` are those of the actuators whose rows ``packer`` packs.
+    ``outlets`` are those of the actuators whose rows ``packer`` packs. Where nobody has
+    subscribed until then these are the last ones, as a later subscription receives no others; one
+    that comes while they are published may lack those before them.
     """
 
-    def __init__(
-            self, packer: Packer, outlets: Sequence[Outlet],
-            live: Sequence[LivePeriods]) -> None:
-        self._packer, self._outlets, self._live = packer, outlets, live
+    def __init__(self, packer: Packer, outlets: Sequence[Outlet]) -> None:
+        self._packer, self._outlets = packer, outlets
         applied = packer.applied
         self._own = Keeping(
             np.zeros(1, np.int64), applied, np.zeros((MOST, len(applied)), COMMAND))
@@ -59,27 +58,21 @@ class QuietSetpoints:
         return MOST, self._part
 
     def publish(self, tick: int, step_ns: int) -> None:
-        """
-        Publish what was applied in the ticks after ``tick``.
-
-        Where nobody has subscribed until now, the last ones: a later subscription receives no
-        others.
-        """
-        n = int(self._own.n[0])
-        chosen = {row: self._chosen(row, tick, n)
-                  for row in np.flatnonzero(self._own.kept['kinds'][:n].any(axis=0)).tolist()}
-        last = self._own.applied.copy()
-        for k in sorted(set().union(*chosen.values())):
-            self._own.applied[:] = self._own.kept[k]
+        """Publish what was applied in the ticks after ``tick``."""
+        applied, kept = self._own.applied, self._own.kept[:self._own.n[0]]
+        firsts = {row: self._first(row, len(kept))
+                  for row in np.flatnonzero(kept['kinds'].any(axis=0)).tolist()}
+        last = applied.copy()
+        for k in range(min(firsts.values(), default=len(kept)), len(kept)):
+            applied[:] = kept[k]
             t_ns = (tick + 1 + k) * step_ns
             self._packer.pack_numbers(t_ns, t_ns - step_ns)
-            for row, own in chosen.items():
-                if k in own:
+            for row, first in firsts.items():
+                if k >= first:
                     self._outlets[row].publish(self._packer.of_actuator(row, (APPLIED_PLACE,)))
-        self._own.applied[:] = last
+        applied[:] = last
 
-    def _chosen(self, row: int, tick: int, n: int) -> Sequence[int]:
-        """Return which of ``n`` kept ticks of an actuator to publish."""
+    def _first(self, row: int, n: int) -> int:
+        """Return from which of ``n`` kept ticks on an actuator's are published."""
         self._outlets[row].refresh()
-        due = [k for k in range(n) if self._live[row].due(tick + 1 + k, (APPLIED_PLACE,))]
-        return due if self._outlets[row].has_subscribers() else due[-KEPT.depth:]
+        return 0 if self._outlets[row].has_subscribers() else max(0, n - KEPT.depth)

@@ -45,7 +45,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
         chunk.add(t_ns, 0, packer.all_messages())
     layout = packer.quiet_layout(run.step_ns)
     packer.recording(np.zeros(2, np.int64), layout, chunk.room(layout, 1))
-    QuietSetpoints(packer, (), ())
+    QuietSetpoints(packer, ())
     return simulation.group.actuators
 
 

@@ -7,8 +7,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
-from isa_ros.nodes.middleware.throttled import BURST
 from isa_ros.nodes.middleware.qos import KEPT
+from isa_ros.nodes.middleware.throttled import BURST
 from isa_ros.replay.replay import replay
 from msg_adapters.cdr_reader import decode
 import pytest

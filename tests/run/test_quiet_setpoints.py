@@ -1,18 +1,17 @@
 """Setpoints of quiet ticks: what publishers of this process get of them, and when."""
 
-from isa_ros.core.topic import KEPT, Topic
-from isa_ros.run.live import every_tick
+from isa_ros.core.topic import KEPT
 from isa_ros.run.outlets import Outlets
 from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.packing import Messages
 from isa_ros.scripting.run import load
+from isa_ros.simulation import Simulation
 from isa_ros.tick.planned import MOST
 from msg_adapters.actuator_messages import APPLIED_PLACE
 import pytest
 from tests.tick.quietly import advance
 
 N_TICKS = 150
-PERIOD = 4      # of a topic that is thinned
 
 
 class Publishers:
@@ -36,14 +35,19 @@ class Publishers:
             self.sent.append(messages[APPLIED_PLACE])
 
 
-def published(pattern, outlets, period_of=every_tick, n_ticks=N_TICKS, recorder=None):
-    """Run a leg that trots by calls of so many ticks; return its single ticks."""
+def leg(outlets: list[Publishers]) -> Simulation:
+    """Return one that trots, with publishers of its actuators and no recorder."""
     simulation = load('leg', scenario='trot_leg').simulation()
     run = simulation.scenario.run
-    output = RunOutput(packer_of(run, simulation.loop.rows.published), run.step_ns, recorder,
-                       Outlets(actuators=outlets), period_of=period_of)
-    simulation.loop.sinks = (output,)
-    return advance(simulation, n_ticks, pattern)
+    simulation.loop.sinks = (RunOutput(
+        packer_of(run, simulation.loop.rows.published), run.step_ns, None,
+        Outlets(actuators=outlets)),)
+    return simulation
+
+
+def published(pattern: tuple[int, ...], outlets: list[Publishers]) -> int:
+    """Run it by calls of so many ticks; return its single ticks."""
+    return advance(leg(outlets), N_TICKS, pattern)
 
 
 @pytest.fixture(scope='module')
@@ -84,25 +88,9 @@ def test_one_that_comes_during_a_call_receives_all_of_it(each):
     assert len(outlets[0].sent) < len(heard)
 
 
-def test_a_thinned_topic_is_published_at_its_ticks(each):
-    """The same ones as tick by tick: the last of those that are due."""
-    def period_of(topic: Topic) -> int:
-        return PERIOD if topic.name.endswith('applied_setpoint') else 1
-    single, quiet = ([Publishers(0) for _ in range(3)] for _ in range(2))
-    published((1,), single, period_of)
-    published((30,), quiet, period_of)
-    for one, other, all_of_it in zip(single, quiet, each):
-        assert one.sent == other.sent
-        assert 0 < len(one.sent) <= len(all_of_it) / PERIOD + 1
-
-
 def test_what_is_in_force_afterwards_is_the_last(each):
     """A tick of Python, and its message, follow what a call has left."""
-    simulation = load('leg', scenario='trot_leg').simulation()
-    run = simulation.scenario.run
-    output = RunOutput(packer_of(run, simulation.loop.rows.published), run.step_ns, None,
-                       Outlets(actuators=[Publishers() for _ in range(3)]))
-    simulation.loop.sinks = (output,)
+    simulation = leg([Publishers() for _ in range(3)])
     simulation.loop.begin()
     for _ in range(3):
         simulation.loop.advance()

@@ -1,18 +1,19 @@
 """Forces that go on to swing where the motion has ended, as those of loops that hunt."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from isa_ros.analysis.report.key_figures import END, settling_time
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.loads.sheets import Blocked
+from isa_ros.reu.wiring import active
 import numpy as np
 from numpy.typing import NDArray
 
 _LEAST = 0.01       # of the range of the force sensor: a larger swing is told
 _STANDS = 1e-3      # of the stroke: who moves by less stands
-_HALVES = 4         # half periods from which on a force swings: two periods
+_HALVES = 3         # whole half periods from which on a force swings
 
 
 class Swing(NamedTuple):
@@ -37,9 +38,18 @@ def swings(signals: Signals) -> Iterator[Swing]:
         span = own.sheet.plant.sensors.force_range
         size, hertz = swing_at_end(signals.drawn(f'{own.name}.force'), _LEAST * span)
         is_fixed = isinstance(own.load, Blocked) or np.ptp(x) == 0.0
-        wanted, _ = swing_at_end(signals.drawn(f'{own.name}.force_reference'), 0.5 * size)
-        if size and not (is_fixed and wanted):
+        if is_fixed and size and not _is_own(own, signals, size):
+            continue
+        if size:
             yield Swing(own.name, size, hertz, size / span)
+
+
+def _is_own(own: ActuatorConfig, signals: Signals, size: float) -> bool:
+    """Return whether a swing on a fixture is one of the force loop, and nobody wanted it."""
+    if 'force' not in active(own.sheet.reu):
+        return False
+    wanted, _ = swing_at_end(signals.drawn(f'{own.name}.force_reference'), 0.5 * size)
+    return not wanted
 
 
 def stood(own: ActuatorConfig, x: NDArray[np.float64]) -> bool:
@@ -52,33 +62,39 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
     """
     Return half of peak to peak, and Hz, of a swing in the last tenth of the time; 0: none.
 
-    It swings where it goes up and down in turn, each time by more than twice ``least``; the
-    median of these ways is its height, so that a drift, a step or a pulse beside it does not
-    count.
+    It swings where it goes up and down in turn to the end, by more than twice ``least``. Its
+    height is the median of the ways between the extremes, after those of less than a limit are
+    left out, the largest one that leaves a swing: so what is faster and smaller does not count,
+    nor a drift, a step or a pulse beside it.
     """
     if not len(signal.t):
         return 0.0, 0.0
     is_tail = (signal.t >= signal.t[-1] - END * (signal.t[-1] - signal.t[0])) & np.isfinite(
         signal.values)
     t, values = signal.t[is_tail], signal.values[is_tail]
-    turns = _turns(values, 2.0 * least)
-    if len(turns) <= _HALVES:
-        return 0.0, 0.0
-    # of whole half periods: from the first extreme to the last, without begin and end
-    hertz = 0.5 * (len(turns) - 3) / float(t[turns[-2]] - t[turns[1]])
-    return 0.5 * float(np.median(np.abs(np.diff(values[turns])))), hertz
+    found, limit = (0.0, 0.0), 2.0 * least
+    while len(extremes := _extremes(values.tolist(), limit)) > _HALVES:
+        at = t[extremes]
+        half = (at[-1] - at[0]) / (len(at) - 1)
+        if t[-1] - at[-1] <= 2.0 * half:
+            found = 0.5 * float(np.median(np.abs(np.diff(values[extremes])))), 0.5 / float(half)
+        if not limit:
+            break
+        limit *= 2.0
+    return found
 
 
-def _turns(values: NDArray[np.float64], height: float) -> list[int]:
-    """Return the places of begin, extremes and end of ways that are longer than ``height``."""
-    turns: list[int] = []
-    way = extreme = 0.0
-    for place, value in enumerate(values.tolist()):
-        if not turns:
-            turns, extreme = [place], value
-        elif way * (value - extreme) > 0.0:
-            extreme, turns[-1] = value, place
-        elif abs(value - extreme) > height:
-            way, extreme = value - extreme, value
-            turns.append(place)
-    return turns
+def _extremes(values: Sequence[float], limit: float) -> list[int]:
+    """Return the places of the extremes between ways that are longer than ``limit``."""
+    low = high = way = 0        # places since the last extreme, and whether it goes up or down
+    found: list[int] = []
+    for place, value in enumerate(values):
+        low = place if value < values[low] else low
+        high = place if value > values[high] else high
+        if way >= 0 and values[high] - value > limit:
+            found += [high] if high else []     # the begin is none
+            way, low, high = -1, place, place
+        elif way <= 0 and value - values[low] > limit:
+            found += [low] if low else []
+            way, low, high = 1, place, place
+    return found
