@@ -102,6 +102,15 @@ def test_what_may_be_left_out_may_stand_anywhere(words: str) -> None:
         'ram', 0.1, -0.3, 1e5)
 
 
+def test_a_parser_reads_a_line_after_one_that_it_has_refused(capsys):
+    parser = cli.make_parser(['command'])
+    with pytest.raises(SystemExit):
+        parser.parse_args(['command', 'ram', '--stiffness', '1e5', 'abc'])
+    assert "position: 'abc'" in capsys.readouterr().err.lower()
+    options = parser.parse_args(['command', 'ram', '--stiffness', '1e5', '0.1'])
+    assert (options.actuator, options.position, options.stiffness) == ('ram', 0.1, 1e5)
+
+
 def test_names_may_stand_behind_an_option() -> None:
     """Also the second time that a parser is asked."""
     parser = cli.make_parser(['actuators'])

@@ -62,7 +62,7 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
     """
     Return half of peak to peak, and Hz, of a swing in the last tenth of the time; 0: none.
 
-    It swings where it goes up and down in turn to the end, by more than twice ``least``. Its
+    It swings where it goes up and down in turn to the end, by more than twice ``least`` > 0. Its
     height is the median of the ways between the extremes, after those of less than a limit are
     left out, the largest one that leaves a swing: so what is faster and smaller does not count,
     nor a drift, a step or a pulse beside it.
@@ -78,8 +78,6 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
         half = (at[-1] - at[0]) / (len(at) - 1)
         if t[-1] - at[-1] <= 2.0 * half:
             found = 0.5 * float(np.median(np.abs(np.diff(values[extremes])))), 0.5 / float(half)
-        if not limit:
-            break
         limit *= 2.0
     return found
 

@@ -56,6 +56,13 @@ class Counting(Puller):
         self._force = float(snapshot.decode())
 
 
+class Loose(Puller):
+    """Takes what has no name, or any."""
+
+    def __init__(self, actuator: str, *forces: float, gain: float = 1.0, **others: float) -> None:
+        super().__init__(gain * sum(forces) + sum(others.values()), actuator)
+
+
 def pull(run, values, where):
     """Return a controller, but not as a class."""
     return Puller(**values)

@@ -150,6 +150,8 @@ def test_refused_as_the_file_is_read(controllers, message):
     ({'class': PULLER, 'force': 2.0, 'actuator': 'hfe', 'farce': 2.0},
      "leg.yaml: controllers.pull: Puller got an unexpected keyword argument 'farce'; it takes "
      'force, actuator'),
+    ({'class': 'tests.config.runs.pullers:Loose'},
+     "controllers.pull: Loose missing a required argument: 'actuator'; it takes actuator, gain"),
     ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
     ({'class': 'tests.config.runs.pullers:Absent'},
      'leg.yaml: controllers.pull: SystemExit: 0 (pullers.py:'),
