@@ -19,8 +19,8 @@ def echo_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('topic', metavar='TOPIC', nargs='?',
                         help='such as ram/joint_states (default: list all topics)')
     parser.add_argument('--count', type=count, metavar='N',
-                        help='end after so many messages, of those that are kept the last ones (default: '
-                             'until Ctrl-C)')
+                        help='end after so many messages, of those that are kept the last ones '
+                             '(default: until Ctrl-C)')
     _timeout(parser)
 
 
