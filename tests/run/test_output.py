@@ -8,7 +8,9 @@ from isa_ros.run.outlets import NoOutlet, Outlets
 from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.packing import Messages, Packer
 from isa_ros.tick.exchange import Rows
+from isa_ros.tick.planned import MOST
 from msg_adapters import clock, event
+import numpy as np
 import pytest
 from tests.run.recorder import FakeRecorder
 from tests.runs import hip_and_knee
@@ -82,6 +84,17 @@ def test_a_subscription_is_seen_before_the_next_call_of_quiet_ticks(name):
     assert stage.output.quiet_ticks(200) == 0
     outlet.has_subscription, stage.outlets['events'].has_subscription = False, True
     assert stage.output.quiet_ticks(200) > 100
+
+
+@pytest.mark.parametrize('is_recorded', [True, False])
+@pytest.mark.parametrize('expected', [(True, False), (False, False)])
+def test_a_call_in_which_setpoints_are_applied_has_room_for_them(is_recorded, expected):
+    """They are kept beside the recording; a call without any is as long as it may be."""
+    stage = Stage(is_recorded=is_recorded)
+    assert stage.output.takes_applied(np.array(expected))
+    most, parts = stage.output.begin_quiet(0, 1000, np.array([0, STEP_NS]))
+    assert len(parts) == is_recorded + any(expected)
+    assert most == MOST if any(expected) else MOST < most <= 1000
 
 
 EVERYONE = ('clock', 'events', 'surroundings', 'hip', 'knee')

@@ -1,14 +1,18 @@
 """Setpoints of quiet ticks: what publishers of this process get of them, and when."""
 
+from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.core.topic import KEPT
 from isa_ros.run.outlets import Outlets
 from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.run.packing import Messages
+from isa_ros.run.quiet_setpoints import QuietSetpoints
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 from isa_ros.tick.planned import MOST
 from msg_adapters.actuator_messages import APPLIED_PLACE
+from msg_adapters.cdr_reader import decode
 import pytest
+from sensor_msgs.msg import JointState
 from tests.tick.quietly import advance
 
 N_TICKS = 150
@@ -101,3 +105,23 @@ def test_what_is_in_force_afterwards_is_the_last(each):
         other.loop.advance()
     assert simulation.ticks == other.ticks == 40
     assert simulation.loop.rows.applied.tobytes() == other.loop.rows.applied.tobytes()
+
+
+def test_what_took_effect_in_a_tick_that_python_ends_stays():
+    """Behind those that were kept; their messages are of their own ticks."""
+    simulation = leg([])
+    rows, run = simulation.loop.rows, simulation.scenario.run
+    outlets = [Publishers(0) for _ in range(3)]
+    own = QuietSetpoints(packer_of(run, rows.published), outlets)
+    _, part = own.begin()
+    rows.applied['kinds'] = (0, HAS_SETPOINT, 0)
+    for position in (0.02, 0.03):
+        rows.applied['position'][1] = position
+        part.bound.run()
+    rows.applied['position'][1] = 0.04
+    own.publish(7, run.step_ns)
+    assert rows.applied['position'][1] == 0.04
+    found = [decode(data, JointState) for data in outlets[1].sent]
+    assert [message.position[0] for message in found] == [0.02, 0.03]
+    assert [message.header.stamp.nanosec for message in found] == [7_000_000, 8_000_000]
+    assert outlets[0].sent == outlets[2].sent == []

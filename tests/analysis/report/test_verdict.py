@@ -93,6 +93,7 @@ def test_what_follows_a_motion_that_goes_on_is_not_blamed():
     stands = np.where(T < 0.85, wave, 0.04)
     assert told(stands) == (NOTE, 'Still moving at the end: ram.')
     assert told(np.full(101, np.nan)).text == 'Still moving at the end: ram.'
+    assert told(0.04 + 1e-4 * T).text == 'Still moving at the end: ram.'    # by 0.01 mm
 
 
 def test_what_came_to_rest_and_is_off_at_the_end_has_not_settled():
