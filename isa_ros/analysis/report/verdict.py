@@ -19,7 +19,7 @@ GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
 _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
-    REFUSED: ('Refused', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
+    REFUSED: ('Not followed', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
 _MOVES = 'Moving at the end, as its reference'
 _SETTLED, _ON = 'Settled', state_name(ENABLED)

@@ -103,6 +103,8 @@ def _tree(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, (list, tuple)):
         return [_tree(each) for each in value]
+    if isinstance(value, bytes):        # one for a field of type byte
+        return value[0] if len(value) == 1 else list(value)
     return printable(value) if isinstance(value, str) else value
 
 

@@ -55,7 +55,7 @@ def test_an_end_that_was_none_is_bad():
 
 @pytest.mark.parametrize(('kind', 'grade', 'word'), [
     ('trip', BAD, 'Tripped'), ('warning', NOTE, 'Warned'), ('change', NOTE, 'Fault or change'),
-    ('refused', NOTE, 'Refused'), ('cavity', NOTE, 'Cavitated'),
+    ('refused', NOTE, 'Not followed'), ('cavity', NOTE, 'Cavitated'),
     ('overpressure', BAD, 'Overpressure')])
 def test_events_are_told_with_their_time(kind, grade, word):
     found = verdict(signals(), [Event(0.25, 'ram', kind, 'overload')] * 8, [], '')

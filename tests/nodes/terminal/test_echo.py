@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.nodes.terminal.echo import _published, _quality, message_text
 import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -58,3 +59,8 @@ def test_a_message_has_the_order_of_its_type():
     keys = [line.partition(':')[0] for line in text.splitlines() if not line.startswith(' ')]
     assert keys == ['header', 'name', 'position', 'velocity', 'effort']
     assert 'position: [0.25]\n' in text
+
+
+def test_a_byte_is_a_number():
+    text = message_text(DiagnosticStatus(level=DiagnosticStatus.ERROR, message='fault'))
+    assert text.startswith('level: 2\n')
