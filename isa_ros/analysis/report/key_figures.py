@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from isa_ros.analysis.signals.frequency import ripple
-from isa_ros.analysis.signals.signals import Signals
+from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LITRE, MILLI, MPA
@@ -66,6 +66,13 @@ def settling_time(t: Floats, x: Floats) -> float | None:
         return None
     settled = float(t[outside[-1] + 1])
     return settled if settled < t[0] + (1.0 - END) * (t[-1] - t[0]) else None
+
+
+def end_of(signal: Signal) -> Signal:
+    """Return a signal in the last tenth of its time."""
+    t, values = signal
+    is_last = t >= t[-1] - END * (t[-1] - t[0]) if len(t) else np.zeros(0, np.bool_)
+    return Signal(t[is_last], values[is_last])
 
 
 def error_of(signals: Signals, actuator: str, field: str) -> tuple[Floats, Floats] | None:

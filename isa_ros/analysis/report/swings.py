@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import END, settling_time
+from isa_ros.analysis.report.key_figures import end_of, settling_time
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.loads.sheets import Blocked
@@ -67,11 +67,9 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
     left out, the largest one that leaves a swing: so what is faster and smaller does not count,
     nor a drift, a step or a pulse beside it.
     """
-    if not len(signal.t):
-        return 0.0, 0.0
-    is_tail = (signal.t >= signal.t[-1] - END * (signal.t[-1] - signal.t[0])) & np.isfinite(
-        signal.values)
-    t, values = signal.t[is_tail], signal.values[is_tail]
+    t, values = end_of(signal)
+    is_there = np.isfinite(values)
+    t, values = t[is_there], values[is_there]
     found, limit = (0.0, 0.0), 2.0 * least
     while len(extremes := _extremes(values.tolist(), limit)) > _HALVES:
         at = t[extremes]

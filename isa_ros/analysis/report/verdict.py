@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import END, SETTLED, settling_time, shown_position
+from isa_ros.analysis.report.key_figures import end_of, SETTLED, settling_time, shown_position
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
 from isa_ros.analysis.report.swings import stood, swings
@@ -19,7 +19,8 @@ GOOD, NOTE, BAD = 'good', 'note', 'bad'
 _MOST = 6       # events of a kind that are told one by one
 _KINDS: Mapping[str, tuple[str, str]] = {
     TRIP: ('Tripped', BAD), WARNING: ('Warned', NOTE), CHANGE: ('Fault or change', NOTE),
-    REFUSED: ('Not followed', NOTE), CAVITY: ('Cavitated', NOTE), OVERPRESSURE: ('Overpressure', BAD)}
+    REFUSED: ('Not followed', NOTE), CAVITY: ('Cavitated', NOTE),
+    OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
 _MOVES = 'Moving at the end, as its reference'
 _SETTLED, _ON = 'Settled', state_name(ENABLED)
@@ -94,9 +95,8 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
 
 def _goes_on(position: Signal, reference: Signal) -> bool:
     """Return whether the reference moves in the last tenth of the time, and so is to be left."""
-    t = reference.t
-    tail = reference.values[t >= t[-1] - END * (t[-1] - t[0])] if len(t) else reference.values
-    return bool(len(tail) and np.ptp(tail) > SETTLED * np.ptp(position.values))
+    last = end_of(reference).values
+    return bool(len(last) and np.ptp(last) > SETTLED * np.ptp(position.values))
 
 
 def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:

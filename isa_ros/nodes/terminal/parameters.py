@@ -129,14 +129,17 @@ def _values(visitor: Visitor, path: str, changes: Sequence[ParameterChange]) -> 
 
 def _is_key(name: str) -> bool:
     """Return whether a packaged model has such a parameter."""
-    for model in model_names():
-        own: Any = default_actuator(model, model).sheet
-        for part in name.split('.'):
-            own = getattr(own, part, None) if isinstance(own, Parameters) and part in {
-                field.name for field in fields_of(type(own))} else None
-        if own is not None and not isinstance(own, Parameters):
-            return True
-    return False
+    return any(_has(default_actuator(model, model).sheet, name.split('.'))
+               for model in model_names())
+
+
+def _has(own: object, path: Sequence[str]) -> bool:
+    """Return whether a set of parameters has a value by these names, one within the other."""
+    first, *rest = path
+    if not isinstance(own, Parameters) or first not in [f.name for f in fields_of(type(own))]:
+        return False
+    value = getattr(own, first)
+    return _has(value, rest) if rest else not isinstance(value, Parameters)
 
 
 def _asked(visitor: Visitor, path: str, service: str, kind: Any, request: Any) -> Any:
