@@ -19,6 +19,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.device import FORCE, MODES
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.device_steps import mode_before, read_device_step
 from isa_ros.scenario.keys import SETPOINT
@@ -142,6 +143,10 @@ def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig,
     given.update({f.name: tree[f.name] for f in fields(ImpedanceSetpoint) if f.name in tree})
     if given['position'] == HOLD:
         given['position'] = actuator.initial_position
+    elif isinstance(given['position'], str):
+        unit = of_coordinate('m | rad', actuator.sheet.is_rotary)
+        raise ConfigError(
+            f'{place}.position = {given["position"]!r}, must be a number in {unit}, or {HOLD}')
     return build(ImpedanceSetpoint, written(given, place), place, actuator.sheet.is_rotary)
 
 

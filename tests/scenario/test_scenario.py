@@ -128,7 +128,7 @@ def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
      'tracks.rotor[1].t_s = 0.2 s, must be > the one before it, 0.2 s'),
     ('  - {t_s: 0, position: .nan}\n', 'rotor[0].position = nan rad, must be finite'),
     ('  - {t_s: 0, position: 0.8, effort: .inf}\n', 'effort = inf Nm, must be finite'),
-    ('  - {t_s: 0, position: held}\n', "position = 'held', must be a number in rad"),
+    ('  - {t_s: 0, position: held}\n', "position = 'held', must be a number in rad, or hold"),
     ('  - {t_s: 0, position: 50}\n', 'position = 50 rad, must be 0 to 1.745 rad, the stroke'),
     ('  - {t_s: 0, position_deg: 50}\n', 'position_deg is unknown; the key is position, in SI'),
     ('  - {t_s: 0, position: 0.8, stiffness: -1}\n', 'stiffness = -1 Nm/rad, must be >= 0'),
