@@ -27,6 +27,8 @@ same versions. Both functions may also be imported and called.
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
+import sys
+from traceback import walk_tb
 from typing import Any, cast, TypeVar
 
 from isa_ros.bag.provenance import CONFIGURATION, VERSION
@@ -59,18 +61,23 @@ AssertNoTrips = Callable[..., None]
 AssertReplays = Callable[..., None]
 AssertReproduces = Callable[..., None]
 
+_INNER = {'isa_ros', 'msg_adapters', 'numpy', 'yaml', *sys.stdlib_module_names}
+"""Packages whose frames say nothing to a user."""
 _NAMES = ('in the bag', 'now')  # of both runs in a message
 
 
 def _without_inner_frames(check: _Check) -> _Check:
-    """Return a check that shows the line of a bag or file that cannot be used, and no frames."""
+    """Return a check whose error of a bag or file shows no frames, unless some are a user's."""
     @wraps(check)
     def shown(*arguments: Any, **named: Any) -> None:
         __tracebackhide__ = True
         try:
             check(*arguments, **named)
         except (BagError, ConfigError) as error:
-            raise error.with_traceback(None)
+            if all(frame.f_globals.get('__name__', '').partition('.')[0] in _INNER
+                   for frame, _ in walk_tb(error.__traceback__)):
+                raise error.with_traceback(None)
+            raise
     return cast(_Check, shown)
 
 

@@ -72,6 +72,27 @@ def test_a_bag_that_is_missing_is_one_line_without_the_frames_of_its_reader(proj
     assert text.count('def own(assert_reproduces)') == 1
 
 
+def test_an_error_of_a_users_controller_keeps_its_frames(project):
+    project.makepyfile("""
+        import isa_ros
+        from isa_ros.errors import ConfigError
+
+        class Own(isa_ros.Controller):
+            def start(self, names):
+                self.helped()
+
+            def helped(self):
+                raise ConfigError('a sign is wrong')
+
+        def test_it(assert_reproduces):
+            isa_ros.load('rig_rotary', duration=0.005).simulate().save('bags/own')
+            assert_reproduces('rig_rotary', None, 'bags/own', controllers=(Own(),))
+        """)
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=1)
+    assert "raise ConfigError('a sign is wrong')" in '\n'.join(result.outlines)
+
+
 def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
     """Change the last number of one message by less than the tolerances below."""
     if (topic, sequence) != ('/rotor/load_cell', EFFORT_TICK):

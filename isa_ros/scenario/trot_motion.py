@@ -8,6 +8,7 @@ the joint itself, a linear one through the linkage of the joint. Equations G1 to
 
 from dataclasses import field, fields
 from functools import cached_property
+import math
 
 from isa_ros.config.models.catalogue import gait_section, leg_section
 from isa_ros.config.runs.leg_config import LegConfig
@@ -29,6 +30,7 @@ import numpy as np
 
 LEG = 'hyq_real'  # leg of the trot in a run without one
 GAIT = 'trot'
+_STARTING_STRIDES = 10     # at most, as which the start is sampled
 
 
 @frozen(kw_only=True)
@@ -84,11 +86,20 @@ class GaitMotion:
         return [self._joint(k / CHECKED_INSTANTS) for k in range(CHECKED_INSTANTS)]
 
     def reach(self) -> tuple[Excursion, Excursion]:
-        """Return the least and the greatest position and effort, those of the start with them."""
+        """Return the least and the greatest excursion, those of the start with them."""
         low, high = (end - self.origin for end in self.span)
         efforts = [0.0, *(self.gait.feed_forward * effort for _, _, effort in self._stride)]
-        return (Excursion(min(low, 0.0), 0.0, min(efforts)),
-                Excursion(max(high, 0.0), 0.0, max(efforts)))
+        speeds = [speed for _, speed, _ in self._stride] + self._starting_speeds
+        return (Excursion(min(low, 0.0), min(speeds), min(efforts)),
+                Excursion(max(high, 0.0), max(speeds), max(efforts)))
+
+    @property
+    def _starting_speeds(self) -> list[float]:
+        """Return the velocity of the actuator at instants of the start, as many as of strides."""
+        strides = self.gait.start_s * self.gait.step_frequency_hz
+        n = math.ceil(CHECKED_INSTANTS * min(max(1.0, strides), _STARTING_STRIDES))
+        return [self.at(round(k / n * self.gait.start_s * NS_PER_SECOND)).velocity
+                for k in range(n)]
 
     @cached_property
     def origin(self) -> float:

@@ -30,6 +30,16 @@ def of(run: RunConfig, name: str, **values: float | str) -> GaitMotion:
     return read_gait(dict(values), PLACE, actuator, run.leg, actuator.initial_position)
 
 
+@pytest.mark.parametrize('start_s', [0.0, 0.01, 0.7])
+def test_its_reach_has_every_speed_of_stride_and_start(leg: RunConfig, start_s: float) -> None:
+    """A start within 10 ms goes as fast as the way from the setpoint to the trot asks for."""
+    own = of(leg, 'kfe', joint='kfe', start_s=start_s)
+    low, high = own.reach()
+    speeds = [own.at(k * MS // 2).velocity for k in range(4000)]
+    assert low.velocity <= min(speeds) + 1e-3 and max(speeds) - 1e-3 <= high.velocity
+    assert max(map(abs, speeds)) > 0.98 * max(-low.velocity, high.velocity)
+
+
 def test_the_joints_of_a_leg_share_it_and_compute_each_instant_once(
         leg: RunConfig, monkeypatch: pytest.MonkeyPatch) -> None:
     """As many as have its trot: another step height is another leg."""

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from isa_ros.analysis.report.key_figures import end_of, SETTLED, settling_time, shown_position
+from isa_ros.analysis.report.key_figures import (
+    end_of, error_of, SETTLED, settling_time, shown_position)
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
 from isa_ros.analysis.report.swings import stood, swings
@@ -22,6 +23,7 @@ _KINDS: Mapping[str, tuple[str, str]] = {
     REFUSED: ('Not followed', NOTE), CAVITY: ('Cavitated', NOTE),
     OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
+_FOLLOWS = 0.25     # of the range of a reference, within which a position follows it
 _MOVES = 'Moving at the end, as its reference'
 _SETTLED, _ON = 'Settled', state_name(ENABLED)
 
@@ -72,38 +74,42 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
     """Yield which actuators stood, settled, or still move at the end, and by what device."""
     words: dict[str, list[str]] = {}
     for own in signals.run.actuators:
-        position = signals.drawn(f'{own.name}.position')
-        t, x = position
+        t, x = signals.drawn(f'{own.name}.position')
         if not len(t):
             continue
         settled, who = settling_time(t, x), own.name
+        state = _off_at_end(own, bands)
         if np.ptp(x) == 0.0:
             word = 'Did not move'
         elif stood(own, x):
-            word, (scale, unit) = 'Stood', shown_position(own)
+            word, (scale, unit) = f'Stood{state}', shown_position(own)
             who = f'{own.name} within {digits(scale * float(np.ptp(x)), 2)} {unit}'
         elif settled is not None:
-            word, who = _word_at_rest(own, bands), f'{own.name} at t = {settled:.3f} s'
+            word = f'Came to rest{state}' if state else _SETTLED
+            who = f'{own.name} at t = {settled:.3f} s'
         else:
-            word = (_MOVES if _goes_on(position, signals.drawn(f'{own.name}.position_reference'))
-                    else 'Still moving at the end')
+            word = _MOVES if not state and _follows(signals, own) else 'Still moving at the end'
         words.setdefault(word, []).append(who)
     for word in sorted(words):
         is_good = word in ('Did not move', 'Stood', _SETTLED, _MOVES)
         yield Statement(GOOD if is_good else NOTE, f'{word}: {", ".join(words[word])}.')
 
 
-def _goes_on(position: Signal, reference: Signal) -> bool:
-    """Return whether the reference moves in the last tenth of the time, and so is to be left."""
-    last = end_of(reference).values
-    return bool(len(last) and np.ptp(last) > SETTLED * np.ptp(position.values))
+def _follows(signals: Signals, own: ActuatorConfig) -> bool:
+    """Return whether the reference moves in the last tenth of the time, and the position so."""
+    error = error_of(signals, own.name, 'position')
+    if error is None:
+        return False
+    reference = signals.drawn(f'{own.name}.position_reference')
+    moves = np.ptp(end_of(reference).values) > SETTLED * np.ptp(reference.values)
+    apart = np.abs(end_of(Signal(*error)).values).max()
+    return bool(moves and apart < _FOLLOWS * np.ptp(reference.values))
 
 
-def _word_at_rest(own: ActuatorConfig, bands: Sequence[Band]) -> str:
-    """Return what is said of an actuator that came to rest; its device may be off at the end."""
+def _off_at_end(own: ActuatorConfig, bands: Sequence[Band]) -> str:
+    """Return what is said of a device that is not enabled at the end, or ''."""
     states = [band.state for band in bands if band.source == own.name]
-    return (_SETTLED if not states or states[-1] == _ON else
-            f'Came to rest, its device {states[-1]} at the end')
+    return '' if not states or states[-1] == _ON else f', its device {states[-1]} at the end'
 
 
 def _swings(signals: Signals) -> Iterator[Statement]:

@@ -63,7 +63,7 @@ def bode(options: Namespace) -> bool:
 
 
 def step(options: Namespace) -> bool:
-    """Measure step responses; False: an output does not follow its step."""
+    """Measure step responses; False: an output swings on, as that of a loop that hunts."""
     refuse_figure(options.out)
     benches = members(options)
     duration = options.duration or DURATIONS[benches[0].rig.loop.name]
@@ -82,7 +82,7 @@ def step(options: Namespace) -> bool:
         return step_figure(responses, [label for label, _ in benches],
                            title if len(benches) == 1 else f'{options.loop}: step')
     _write(options, found, figure)
-    return all(measured.follows for measured in responses)
+    return not any(measured.swings for measured in responses)
 
 
 def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:

@@ -29,10 +29,14 @@ class StepResponse:
     figures: StepFigures
 
     @property
+    def swings(self) -> bool:
+        """Return whether the output swings on by more than `LOST` of the step: it hunts."""
+        return self.figures.ripple > LOST * abs(self.amplitude)
+
+    @property
     def follows(self) -> bool:
         """Return whether error and ripple at the end are within `LOST` of the step."""
-        end = max(abs(self.figures.steady_error), self.figures.ripple)
-        return end <= LOST * abs(self.amplitude)
+        return not self.swings and abs(self.figures.steady_error) <= LOST * abs(self.amplitude)
 
 
 def step(rig: Rig, duration: float, amplitude: float | None = None) -> StepResponse:

@@ -29,7 +29,7 @@ class Acceptance:
             ignore_override=True)
 
     def takes_setpoint(self) -> bool:
-        """Return whether a setpoint of a topic is taken; log one that is not, once a second."""
+        """Return whether a setpoint of a topic is taken; warn of one that is not."""
         if not self.is_open:
             self._warn(f'setpoint rejected: {self.reason}')
         return self.is_open

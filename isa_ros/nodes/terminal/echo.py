@@ -3,6 +3,7 @@
 from array import array
 from collections.abc import Callable
 from importlib import import_module
+import itertools
 from itertools import islice
 from typing import Any
 
@@ -60,13 +61,12 @@ def echo(topic: str, count: int | None, timeout_s: float,
         quality = _quality(visitor, name)
         visitor.node.create_subscription(
             message_type(_published(visitor)[name]), name, arrived.append, quality)
-        if count is not None and quality.durability == DurabilityPolicy.TRANSIENT_LOCAL:
-            visitor.wait(lambda: arrived)
-            visitor.wait(lambda: False, _BACKLOG_S)     # the oldest come first
-            del arrived[:-count]
-        for _ in islice(iter(int, 1), count):
+        for k in islice(itertools.count(), count):
             if not visitor.wait(lambda: arrived):
                 raise RunError(f'topic {name}: no message within {visitor.seconds}')
+            if k == 0 and count and quality.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+                visitor.wait(lambda: False, _BACKLOG_S)     # the oldest come first
+                del arrived[:-count]
             print_line(f'{message_text(arrived.pop(0))}---')
 
 

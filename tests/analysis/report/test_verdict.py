@@ -94,6 +94,16 @@ def test_what_follows_a_motion_that_goes_on_is_not_blamed():
     assert told(stands) == (NOTE, 'Still moving at the end: ram.')
     assert told(np.full(101, np.nan)).text == 'Still moving at the end: ram.'
     assert told(0.04 + 1e-4 * T).text == 'Still moving at the end: ram.'    # by 0.01 mm
+    assert told(0.08 - wave).text == 'Still moving at the end: ram.'        # the other way
+
+
+def test_what_moves_or_stands_without_its_device_is_told():
+    """A runaway is no motion that follows, and a load that holds itself none that is held."""
+    wave, off = 0.04 + 0.01 * np.sin(2.0 * np.pi * 2.0 * T), [Band('ram', 0.0, 1.0, 'fault')]
+    found = verdict(signals(position=wave, position_reference=wave), [], off, '')[-1]
+    assert found == (NOTE, 'Still moving at the end: ram.')
+    found = verdict(signals(position=0.04 + 1e-5 * T), [], off, '')[-1]
+    assert found == (NOTE, 'Stood, its device fault at the end: ram within 0.01 mm.')
 
 
 def test_what_came_to_rest_and_is_off_at_the_end_has_not_settled():
