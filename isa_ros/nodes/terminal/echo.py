@@ -4,7 +4,6 @@ from array import array
 from collections.abc import Callable
 from importlib import import_module
 import itertools
-from itertools import islice
 from typing import Any
 
 from isa_ros.errors import ConfigError, printable, RunError
@@ -61,7 +60,7 @@ def echo(topic: str, count: int | None, timeout_s: float,
         quality = _quality(visitor, name)
         visitor.node.create_subscription(
             message_type(_published(visitor)[name]), name, arrived.append, quality)
-        for k in islice(itertools.count(), count):
+        for k in itertools.islice(itertools.count(), count):
             if not visitor.wait(lambda: arrived):
                 raise RunError(f'topic {name}: no message within {visitor.seconds}')
             if k == 0 and count and quality.durability == DurabilityPolicy.TRANSIENT_LOCAL:
