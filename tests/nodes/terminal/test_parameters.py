@@ -1,6 +1,7 @@
 """Values of parameters as they are typed."""
 
-from isa_ros.nodes.terminal.parameters import _parameter, needed_of, ParameterChange
+from isa_ros.nodes.terminal.parameters import (
+    _is_key, _parameter, needed_of, ParameterChange)
 import pytest
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
@@ -37,3 +38,11 @@ COUNT = ParameterDescriptor(
 def test_what_a_value_must_be_is_told_with_its_meaning(known, value, expected):
     """By the descriptor of its node; words and what has no range are for the node."""
     assert needed_of(value, known) == expected
+
+
+@pytest.mark.parametrize(('name', 'expected'), [
+    ('plant.drive.bore_mm', True), ('plant.drive.bore', False), ('plant.drive', False),
+    ('reu.force.kp', False), ('reu.position.stiffness', False), ('', False)])
+def test_a_key_of_the_run_file_alone_is_told_apart_from_what_may_change(name, expected):
+    """A gain changes where its block is on; where it is off it is unknown."""
+    assert _is_key(name) is expected
