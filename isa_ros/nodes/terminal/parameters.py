@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.tunable import tunables
+from isa_ros.actuator.tunable import changing
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.core.frozen import fields_of
@@ -132,7 +132,7 @@ def _is_key(name: str) -> bool:
     """Return whether a packaged model has such a parameter, and none may change it."""
     sheets = [default_actuator(model, model).sheet for model in model_names()]
     return any(_has(own, name.split('.')) for own in sheets) and not any(
-        name in tunables(own) for own in sheets)
+        name == each.key for own in sheets for each in changing(own).values())
 
 
 def _has(own: object, path: Sequence[str]) -> bool:
