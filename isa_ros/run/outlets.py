@@ -16,6 +16,10 @@ class Outlet(Protocol):
         """Look for subscriptions now."""
         ...
 
+    def skip(self, n_ticks: int) -> None:
+        """Pass so many ticks without a message."""
+        ...
+
     def has_subscribers(self) -> bool:
         """Return whether there is a subscription; called once a tick."""
         ...
@@ -31,6 +35,9 @@ class NoOutlet:
     wanted: Collection[int] | None = ()
 
     def refresh(self) -> None:
+        """Do nothing."""
+
+    def skip(self, n_ticks: int) -> None:
         """Do nothing."""
 
     def has_subscribers(self) -> bool:

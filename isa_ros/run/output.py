@@ -50,6 +50,7 @@ class RunOutput(RowSink):
         self._setpoints = (
             QuietSetpoints(packer, outlets.actuators) if outlets.actuators else None)
         self._keeps = False
+        self._sampled = outlets.clock, outlets.surroundings, *outlets.actuators
 
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
@@ -58,10 +59,7 @@ class RunOutput(RowSink):
 
     def quiet_ticks(self, tick: int) -> int:
         """Return how many ticks after ``tick`` only have to be packed and recorded."""
-        of_all = self._outlets.clock, self._outlets.surroundings, *self._outlets.actuators
-        for outlet in of_all:
-            outlet.refresh()    # a call may last as long as hundreds of ticks
-        if any(outlet.has_subscribers() for outlet in of_all) or self._events:
+        if any(outlet.has_subscribers() for outlet in self._sampled) or self._events:
             return 0
         return self._packer.quiet_ticks(tick * self._step_ns, self._step_ns)
 
@@ -90,6 +88,8 @@ class RunOutput(RowSink):
         """Record what was written, and publish what is kept."""
         if self._setpoints is not None and self._keeps:
             self._setpoints.publish(tick, self._step_ns)
+        for outlet in self._sampled:
+            outlet.skip(n_ticks)
         if self._recorder is not None:
             self._recorder.close_stretch(n_ticks)
             if n_ticks:

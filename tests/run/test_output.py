@@ -32,6 +32,10 @@ class FakeOutlet:
     def refresh(self) -> None:
         self.is_seen = self.has_subscription
 
+    def skip(self, n_ticks: int) -> None:
+        if n_ticks:
+            self.refresh()
+
     def has_subscribers(self) -> bool:
         return self.is_seen
 
@@ -81,8 +85,10 @@ def test_a_subscription_is_seen_before_the_next_call_of_quiet_ticks(name):
     outlet = stage.outlets[name]
     assert stage.output.quiet_ticks(0) > 100
     outlet.has_subscription = True
+    stage.output.end_quiet(0, 200)
     assert stage.output.quiet_ticks(200) == 0
     outlet.has_subscription, stage.outlets['events'].has_subscription = False, True
+    stage.output.end_quiet(200, 20)
     assert stage.output.quiet_ticks(200) > 100
 
 
