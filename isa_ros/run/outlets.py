@@ -3,6 +3,7 @@
 from collections.abc import Collection, Sequence
 from typing import NamedTuple, Protocol
 
+from isa_ros.core.topic import KEPT
 from isa_ros.run.packing import Messages
 
 
@@ -46,6 +47,16 @@ class NoOutlet:
 
     def publish(self, messages: Messages) -> None:
         """Do nothing."""
+
+
+def first_published(outlet: Outlet, n: int) -> int:
+    """
+    Return from which of ``n`` messages on a topic that is kept gets them, after a look.
+
+    Without a subscription those that a later one receives are enough.
+    """
+    outlet.refresh()
+    return 0 if outlet.has_subscribers() else max(0, n - KEPT.depth)
 
 
 class Outlets(NamedTuple):

@@ -6,8 +6,7 @@ from typing import NamedTuple
 from isa_ros.core.bound import Bound, nothing, Part
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND
-from isa_ros.core.topic import KEPT
-from isa_ros.run.outlets import Outlet
+from isa_ros.run.outlets import first_published, Outlet
 from isa_ros.run.packing import Packer
 from isa_ros.tick.planned import MOST
 from msg_adapters.actuator_messages import APPLIED_PLACE
@@ -60,7 +59,7 @@ class QuietSetpoints:
     def publish(self, tick: int, step_ns: int) -> None:
         """Publish what was applied in the ticks after ``tick``."""
         applied, kept = self._own.applied, self._own.kept[:self._own.n[0]]
-        firsts = {row: self._first(row, len(kept))
+        firsts = {row: first_published(self._outlets[row], len(kept))
                   for row in np.flatnonzero(kept['kinds'].any(axis=0)).tolist()}
         last = applied.copy()
         for k in range(min(firsts.values(), default=len(kept)), len(kept)):
@@ -71,8 +70,3 @@ class QuietSetpoints:
                 if k >= first:
                     self._outlets[row].publish(self._packer.of_actuator(row, (APPLIED_PLACE,)))
         applied[:] = last
-
-    def _first(self, row: int, n: int) -> int:
-        """Return from which of ``n`` kept ticks on an actuator's are published."""
-        self._outlets[row].refresh()
-        return 0 if self._outlets[row].has_subscribers() else max(0, n - KEPT.depth)

@@ -17,7 +17,7 @@ from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
-from isa_ros.nodes.middleware.qos import KEPT, SETPOINT
+from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.nodes.middleware.throttled import ThrottledWarnings
@@ -25,6 +25,7 @@ from isa_ros.plant.cushion_sheets import is_cushioned
 from isa_ros.plant.plant import is_heated
 from isa_ros.requests import fill_command
 from isa_ros.run.live import every_tick, LivePeriods, PeriodOf
+from isa_ros.run.outlets import first_published
 from isa_ros.run.packing import Packer
 from isa_ros.run.row_messages import Names, topics_of_actuator
 from isa_ros.surroundings.supply_sample import SUPPLY_SAMPLE
@@ -162,12 +163,9 @@ class ActuatorNode(Node):
 
         Without a subscription those that a later one receives are enough.
         """
-        self.outlet.refresh()
-        if not self.outlet.is_subscribed:
-            commands = commands[-KEPT.depth:]
         applied, step_ns = self.actuator.memory.applied, self.setup.timing.step_ns
         last = applied.copy()
-        for t_ns, command in commands:
+        for t_ns, command in commands[first_published(self.outlet, len(commands)):]:
             applied[0] = command
             self._packer.pack_numbers(t_ns, t_ns - step_ns)
             self.outlet.publish(self._packer.of_actuator(0, (APPLIED_PLACE,)))
