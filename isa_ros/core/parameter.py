@@ -153,6 +153,15 @@ class Parameters:
                     object.__setattr__(self, f.name, tuple(value))
 
 
+class _NamedSets(Parameters):
+    """A set of sets by name; another process makes its class by itself."""
+
+    UNION: Any
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return set_by_name, (vars(self), self.UNION)
+
+
 _P = TypeVar('_P', bound=Parameters)
 
 
@@ -180,8 +189,8 @@ def set_by_name(named: Mapping[str, Parameters], union: Any) -> Parameters:
 @cache
 def _named_class(names: tuple[str, ...], union: Any) -> type[Parameters]:
     """Return the class with these fields; the same one for the same names, so that they equal."""
-    return frozen(kw_only=True)(
-        type('NamedSets', (Parameters,), {'__annotations__': dict.fromkeys(names, union)}))
+    return frozen(kw_only=True)(type('NamedSets', (_NamedSets,), {
+        'UNION': union, '__annotations__': dict.fromkeys(names, union)}))
 
 
 def defaults(cls: type[_P]) -> _P:

@@ -148,7 +148,7 @@ def _row(signals: Signals, own: ActuatorConfig) -> Sequence[str]:
         pressure_range(signals, own),
         _error(signals, own, 'position', scale, unit), _error(signals, own, 'force', 1.0, newton),
         '-' if settled is None else f'{settled:.3f}',
-        '-' if settled is None else digits(ripple_at_end(of('force')), 2),
+        '-' if settled is None else _ripple(signals.drawn(f'{own.name}.force')),
         f'{oil[-1] / LITRE:.3f}' if len(oil) else '-')
 
 
@@ -173,15 +173,15 @@ def pressure_range(signals: Signals, own: ActuatorConfig) -> str:
     return text
 
 
-def ripple_at_end(values: Floats) -> float | None:
-    """Return the ripple in the last tenth of the samples; None without samples."""
-    tail = values[-max(2, round(END * len(values))):]
-    return ripple(tail) if len(tail) else None
-
-
 def _settled(signals: Signals, own: ActuatorConfig) -> float | None:
     position = signals.drawn(f'{own.name}.position')
     return settling_time(position.t, position.values) if len(position.t) else None
+
+
+def _ripple(force: Signal) -> str:
+    """Return the ripple in the last tenth of the time; '-' if nothing was recorded there."""
+    tail = end_of(force).values
+    return digits(ripple(tail), 2) if len(tail) else '-'
 
 
 def _peak(values: Floats) -> str:

@@ -143,6 +143,7 @@ def _step_numbers(measured: steps.StepResponse) -> dict[str, Any]:
         'rise_time_s': found.rise_time, 'overshoot': found.overshoot,
         'settling_time_s': found.settling_time, 'settling_band': steps.BAND,
         'steady_error': found.steady_error / scale, 'ripple': found.ripple / scale,
+        'standing_error': measured.standing_error / scale,
         't_s': measured.t.tolist(), 'reference': (measured.reference / scale).tolist(),
         'output': (measured.output / scale).tolist()}
 

@@ -3,7 +3,7 @@
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
-from isa_ros.analysis.signals.step_response import step_figures, StepFigures
+from isa_ros.analysis.signals.step_response import step_figures, StepFigures, TAIL
 from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 from isa_ros.loads.drop_rig import Wheel
@@ -27,6 +27,12 @@ class StepResponse:
     output: np.ndarray
     inward: np.ndarray | None
     figures: StepFigures
+    standing_error: float
+    """
+    Reference less output before the step, as of a load that a loop without integrator carries.
+
+    0.0: within `BAND` of the step. Else the figures are of the change from where it stood.
+    """
 
     @property
     def swings(self) -> bool:
@@ -95,13 +101,17 @@ def check_duration(duration: float) -> None:
 def evaluate(
         loop: Loop, trace: Trace, before: int, start: float, amplitude: float,
         rate: float) -> StepResponse:
-    """Return a step from ``start`` at row ``before`` of a trace."""
+    """Return a step of a reference that stood at ``start``, at row ``before`` > 0 of a trace."""
     output = trace[loop.name]
     t = (np.arange(len(output)) - before) / rate
+    standing = start - float(output[before - max(1, round(TAIL * before)):before].mean())
+    if abs(standing) <= BAND * abs(amplitude):
+        standing = 0.0
+    start -= standing
     return StepResponse(
         loop, amplitude, t, trace[f'{loop.name}_reference'], output,
         None if loop.inward is None else trace[loop.inward],
-        step_figures(t[before:], output[before:], start, start + amplitude, BAND))
+        step_figures(t[before:], output[before:], start, start + amplitude, BAND), standing)
 
 
 def summary(measured: StepResponse) -> str:
@@ -118,6 +128,11 @@ def summary(measured: StepResponse) -> str:
         f'steady error, mean of the last tenth: {found.steady_error / unit.scale:.3g} '
         f'{unit.symbol}',
         f'ripple, deviation over the last tenth: {found.ripple / unit.scale:.3g} {unit.symbol}']
+    if measured.standing_error:
+        side = 'short of' if measured.standing_error * measured.amplitude > 0.0 else 'beyond'
+        lines.append(
+            f'before the step it stood {abs(measured.standing_error) / unit.scale:.3g} '
+            f'{unit.symbol} {side} its reference: all figures are of the change from there')
     if not measured.follows:
         lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '
                      'loop does not follow, or the recording is too short')

@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.analysis.report.key_figures import (
-    error_of, key_rows, landing_rows, landings, ripple_at_end, tracking_error)
+    error_of, key_rows, landing_rows, landings, tracking_error)
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band, bands_of, marks_of, MOST
 from isa_ros.analysis.report.verdict import BAD, GOOD, NOTE, verdict
@@ -181,10 +181,14 @@ def test_what_was_not_recorded_is_a_dash():
     assert row[0] == 'ram' and set(row[1:3]) == {'-'} and set(row[7:]) == {'-'}
 
 
-def test_ripple_is_half_of_peak_to_peak_in_the_last_tenth():
-    values = np.concatenate([np.full(90, 9.0), np.tile([1.0, 4.0], 5)])
-    assert ripple_at_end(values) == 1.5
-    assert ripple_at_end(np.zeros(0)) is None
+def test_ripple_is_half_of_peak_to_peak_in_the_last_tenth_of_the_time():
+    """Not of the samples, of which a bag has fewer where nothing changed."""
+    few = np.concatenate([T[:30], T[-40:]])
+    force = np.where(few < 0.9, 9.0, np.where(np.arange(70) % 2, 4.0, 1.0))
+    row = key_rows(Signals(RUN, {
+        'ram.position': Signal(T, np.where(T < 0.5, 0.04, 0.05)),
+        'ram.force': Signal(few, force)}, T, 'here'))[1]
+    assert row[11] == '1.5'
 
 
 def test_a_landing_is_the_first_contact_after_the_air():

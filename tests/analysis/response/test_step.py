@@ -4,7 +4,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.response.choice import Choice
 from isa_ros.analysis.response.loops import Loop, UserUnit
 from isa_ros.analysis.response.rig import rig
-from isa_ros.analysis.response.step import evaluate, step
+from isa_ros.analysis.response.step import evaluate, step, summary
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -33,6 +33,25 @@ def test_figures_count_from_where_the_step_begins(start: float) -> None:
     assert found.figures.rise_time == pytest.approx(8e-3, rel=1e-9)
     assert found.figures.overshoot == pytest.approx(0.0, abs=1e-12)
     assert found.figures.steady_error == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(('off', 'amplitude', 'told'), [
+    (0.0004, 0.01, ''), (0.0006, 0.01, '0.0006 m short of'), (0.006, -0.01, '0.006 m beyond'),
+    (-0.03, 0.01, '0.03 m beyond')])
+def test_a_standing_error_is_told_and_not_among_the_figures(
+        off: float, amplitude: float, told: str) -> None:
+    """From 5 % of the step on: of less it is a part of the figures. It sinks 1 mm before."""
+    ramp = np.clip((np.arange(220) - BEFORE) / RISES, 0.0, 1.0)
+    output = 0.05 - off + amplitude * ramp
+    output[:BEFORE // 2] += 0.001
+    trace = {'position': output, 'position_reference': 0.05 + amplitude * (ramp > 0.0)}
+    found = evaluate(loop(actuator_sheet('isa_v5')), trace, BEFORE, 0.05, amplitude, RATE)
+    assert found.standing_error == pytest.approx(off if told else 0.0, abs=1e-15)
+    assert found.figures.steady_error == pytest.approx(0.0 if told else off, abs=1e-15)
+    assert found.follows and found.figures.rise_time == pytest.approx(8e-3, rel=1e-9)
+    lines = [line for line in summary(found).splitlines() if line.startswith('before the step')]
+    assert lines == ([f'before the step it stood {told} its reference: all figures are of the '
+                      'change from there'] if told else [])
 
 
 @pytest.mark.parametrize(('load', 'amplitude', 'is_refused'), [
