@@ -75,8 +75,9 @@ def _without_inner_frames(check: _Check) -> _Check:
             check(*arguments, **named)
         except (BagError, ConfigError) as error:
             if all(frame.f_globals.get('__name__', '').partition('.')[0] in _INNER
-                   for frame, _ in walk_tb(error.__traceback__)):
-                raise error.with_traceback(None)
+                   for each in (error, error.__cause__) if each
+                   for frame, _ in walk_tb(each.__traceback__)):
+                raise error.with_traceback(None) from None
             raise
     return cast(_Check, shown)
 

@@ -72,6 +72,23 @@ def test_a_bag_that_is_missing_is_one_line_without_the_frames_of_its_reader(proj
     assert text.count('def own(assert_reproduces)') == 1
 
 
+def test_a_file_that_is_missing_or_wrong_is_one_line_too(project, here):
+    """Also where another library's error is behind it."""
+    (project.path / 'wrong.yaml').write_text('a: [1\n')
+    project.makepyfile(f"""
+        import pytest
+
+        @pytest.mark.parametrize('name', ['no.yaml', 'wrong.yaml'])
+        def test_it(assert_replays, name):
+            assert_replays({str(here)!r}, tolerances=name)
+        """)
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=2)
+    text = '\n'.join(result.outlines)
+    assert 'ConfigError: no.yaml: ' in text and 'ConfigError: wrong.yaml' in text
+    assert 'yaml_text.py' not in text and 'composer.py' not in text and 'direct cause' not in text
+
+
 def test_an_error_of_a_users_controller_keeps_its_frames(project):
     project.makepyfile("""
         import isa_ros

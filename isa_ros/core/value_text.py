@@ -16,6 +16,7 @@ import numpy as np
 
 # What is left out of bytecode: places for the interpreter's notes, and what -OO leaves of asserts.
 _SKIPPED = frozenset(dis.opmap[name] for name in ('CACHE', 'NOP') if name in dis.opmap)
+_HAS_CONSTANT, _HAS_NAME = frozenset(dis.hasconst), frozenset(dis.hasname)
 _LOAD_GLOBAL = dis.opmap['LOAD_GLOBAL']
 _LOAD_ATTRIBUTE = frozenset(
     dis.opmap[name] for name in ('LOAD_ATTR', 'LOAD_METHOD') if name in dis.opmap)
@@ -135,15 +136,18 @@ def type_text(kind: Any) -> str:
     return f'{type(kind).__name__} {kind.name}'
 
 
-def _instructions(code: CodeType) -> Iterator[tuple[int, int]]:
-    """Yield (operation, argument) of the bytecode, an extended argument put together."""
-    extended = 0
+def _instructions(code: CodeType) -> list[tuple[int, int]]:
+    """Return (operation, argument) of the bytecode, an extended argument put together."""
+    found, extended = [], 0
     for operation, argument in zip(code.co_code[::2], code.co_code[1::2]):
+        if operation in _SKIPPED:
+            continue
         if operation == dis.EXTENDED_ARG:
             extended = (extended | argument) << 8
-        elif operation not in _SKIPPED:
-            yield operation, extended | argument
+        else:
+            found.append((operation, extended | argument))
             extended = 0
+    return found
 
 
 def _name_in(code: CodeType, operation: int, argument: int) -> str:
@@ -158,9 +162,9 @@ def code_text(code: CodeType) -> str:
              ','.join(code.co_varnames + code.co_freevars + code.co_cellvars),
              getattr(code, 'co_exceptiontable', b'').hex()]
     for operation, argument in _instructions(code):
-        if operation in dis.hasconst:
+        if operation in _HAS_CONSTANT:
             what = value_text(code.co_consts[argument])
-        elif operation in dis.hasname:
+        elif operation in _HAS_NAME:
             flag = argument & _FLAGGED.get(operation, 0)
             what = f'{flag} {_name_in(code, operation, argument)}'
         else:

@@ -85,15 +85,15 @@ class RunOutput(RowSink):
         return min(most, room.n_ticks), parts
 
     def end_quiet(self, tick: int, n_ticks: int) -> None:
-        """Record what was written, and publish what is kept."""
-        if self._setpoints is not None and self._keeps:
-            self._setpoints.publish(tick, self._step_ns)
-        for outlet in self._sampled:
-            outlet.skip(n_ticks)
+        """Record what was written, then publish what is kept: no publisher loses the bag's."""
         if self._recorder is not None:
             self._recorder.close_stretch(n_ticks)
             if n_ticks:
                 self._recorded = tick + n_ticks
+        if self._setpoints is not None and self._keeps:
+            self._setpoints.publish(tick, self._step_ns)
+        for outlet in self._sampled:
+            outlet.skip(n_ticks)
 
     def add_event(self, tick: int, text: str) -> None:
         """Publish and record an event before a tick: a pause, a step, a reset, an error."""

@@ -27,16 +27,18 @@ class FakeOutlet:
     def __init__(self, log: list[str], name: str, has_subscription: bool) -> None:
         self.log, self.name, self.has_subscription = log, name, has_subscription
         self.is_seen = has_subscription
+        self.to_look = 20
         self.sent: list[Messages] = []
 
     def refresh(self) -> None:
-        self.is_seen = self.has_subscription
+        self.is_seen, self.to_look = self.has_subscription, 20
 
     def skip(self, n_ticks: int) -> None:
-        if n_ticks:
-            self.refresh()
+        self.to_look -= n_ticks
 
     def has_subscribers(self) -> bool:
+        if self.to_look <= 0:
+            self.refresh()
         return self.is_seen
 
     def publish(self, messages: Messages) -> None:

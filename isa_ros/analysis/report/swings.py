@@ -28,7 +28,7 @@ class Swing(NamedTuple):
 
 
 def swings(signals: Signals) -> Iterator[Swing]:
-    """Yield the forces that swing at the end of a run, and are not wanted to."""
+    """Yield the forces that swing at the end of a run; on a fixture, those that nobody wanted."""
     for own in signals.run.actuators:
         t, x = signals.drawn(f'{own.name}.position')
         if not len(t):
@@ -54,8 +54,12 @@ def _is_own(own: ActuatorConfig, signals: Signals, size: float) -> bool:
 
 def stood(own: ActuatorConfig, x: NDArray[np.float64]) -> bool:
     """Return whether an actuator moved by no more than its support, or its loop, yields."""
-    return isinstance(own.load, Blocked) or bool(
-        np.ptp(x) <= _STANDS * own.sheet.plant.drive.stroke)
+    return isinstance(own.load, Blocked) or stands(own, x)
+
+
+def stands(own: ActuatorConfig, x: NDArray[np.float64]) -> bool:
+    """Return whether positions, or references of them, are within a small part of the stroke."""
+    return bool(np.ptp(x) <= _STANDS * own.sheet.plant.drive.stroke)
 
 
 def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
@@ -63,9 +67,9 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
     Return half of peak to peak, and Hz, of a swing in the last tenth of the time; 0: none.
 
     It swings where it goes up and down in turn to the end, by more than twice ``least`` > 0. Its
-    height is the median of the ways between the extremes, after those of less than a limit are
-    left out, the largest one that leaves a swing: so what is faster and smaller does not count,
-    nor a drift, a step or a pulse beside it.
+    height is that of the ways between the extremes, the mean of the medians of those up and those
+    down, after those of less than a limit are left out, the largest one that leaves a swing: so
+    what is faster and smaller does not count, nor a drift, a step or a pulse beside it.
     """
     t, values = end_of(signal)
     is_there = np.isfinite(values)
@@ -75,7 +79,9 @@ def swing_at_end(signal: Signal, least: float) -> tuple[float, float]:
         at = t[extremes]
         half = (at[-1] - at[0]) / (len(at) - 1)
         if t[-1] - at[-1] <= 2.0 * half:
-            found = 0.5 * float(np.median(np.abs(np.diff(values[extremes])))), 0.5 / float(half)
+            ways = np.abs(np.diff(values[extremes]))
+            found = (0.25 * float(np.median(ways[::2]) + np.median(ways[1::2])),
+                     0.5 / float(half))
         limit *= 2.0
     return found
 

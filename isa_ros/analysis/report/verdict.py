@@ -7,11 +7,12 @@ from isa_ros.analysis.report.key_figures import (
     end_of, error_of, SETTLED, settling_time, shown_position)
 from isa_ros.analysis.report.limits import reached_limits
 from isa_ros.analysis.report.marks import Band
-from isa_ros.analysis.report.swings import stood, swings
+from isa_ros.analysis.report.swings import stands, stood, swings
 from isa_ros.analysis.signals.signals import LARGEST, Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.device import ENABLED, state_name
 from isa_ros.core.suggest import listed
+from isa_ros.loads.sheets import Blocked
 from isa_ros.run.events import CAVITY, CHANGE, Event, OVERPRESSURE, REFUSED, TRIP, WARNING
 from isa_ros.text.table import digits
 import numpy as np
@@ -23,7 +24,8 @@ _KINDS: Mapping[str, tuple[str, str]] = {
     REFUSED: ('Not followed', NOTE), CAVITY: ('Cavitated', NOTE),
     OVERPRESSURE: ('Overpressure', BAD)}
 """In the order of the verdict, with their word and whether they are bad."""
-_FOLLOWS = 0.25     # of the range of a reference, within which a position follows it
+_NEAR = 0.25        # of the range of a reference: who follows it is not farther from it
+_ALIKE = 0.5        # of a motion, rms: who follows it moves no more differently
 _MOVES = 'Moving at the end, as its reference'
 _SETTLED, _ON = 'Settled', state_name(ENABLED)
 
@@ -80,9 +82,9 @@ def _motion(signals: Signals, bands: Sequence[Band]) -> Iterator[Statement]:
         settled, who = settling_time(t, x), own.name
         state = _off_at_end(own, bands)
         if np.ptp(x) == 0.0:
-            word = 'Did not move'
+            word = 'Did not move' + ('' if state else _unheeded(signals, own))
         elif stood(own, x):
-            word, (scale, unit) = f'Stood{state}', shown_position(own)
+            word, (scale, unit) = f'Stood{state or _unheeded(signals, own)}', shown_position(own)
             who = f'{own.name} within {digits(scale * float(np.ptp(x)), 2)} {unit}'
         elif settled is not None:
             word = f'Came to rest{state}' if state else _SETTLED
@@ -101,9 +103,17 @@ def _follows(signals: Signals, own: ActuatorConfig) -> bool:
     if error is None:
         return False
     reference = signals.drawn(f'{own.name}.position_reference')
-    moves = np.ptp(end_of(reference).values) > SETTLED * np.ptp(reference.values)
-    apart = np.abs(end_of(Signal(*error)).values).max()
-    return bool(moves and apart < _FOLLOWS * np.ptp(reference.values))
+    wanted, apart = end_of(reference).values, end_of(Signal(*error)).values
+    span = np.ptp(reference.values)
+    return bool(np.ptp(wanted) > SETTLED * span and np.abs(apart).max() < _NEAR * span
+                and apart.std() < _ALIKE * wanted.std())
+
+
+def _unheeded(signals: Signals, own: ActuatorConfig) -> str:
+    """Return what is said of an actuator that stood, and could have moved as its reference."""
+    reference = signals.drawn(f'{own.name}.position_reference').values
+    can = len(reference) and not isinstance(own.load, Blocked)
+    return ' while its reference moved' if can and not stands(own, reference) else ''
 
 
 def _off_at_end(own: ActuatorConfig, bands: Sequence[Band]) -> str:

@@ -29,20 +29,24 @@ class StepResponse:
     figures: StepFigures
     standing_error: float
     """
-    Reference less output before the step, as of a load that a loop without integrator carries.
+    Reference less output at the step, as of a load that a loop without integrator carries.
 
-    0.0: within `BAND` of the step. Else the figures are of the change from where it stood.
+    0.0: within `BAND` of the step, or the output swings. Else the figures are of the change from
+    there.
     """
 
     @property
     def swings(self) -> bool:
-        """Return whether the output swings on by more than `LOST` of the step: it hunts."""
-        return self.figures.ripple > LOST * abs(self.amplitude)
+        """Return whether the deviation at the end, drift aside, exceeds `LOST`: it hunts."""
+        n = round(TAIL * np.count_nonzero(self.t >= 0.0))
+        t, output = self.t[-n:], self.output[-n:]
+        return bool((output - _drift(t, output)(t)).std() > LOST * abs(self.amplitude))
 
     @property
     def follows(self) -> bool:
         """Return whether error and ripple at the end are within `LOST` of the step."""
-        return not self.swings and abs(self.figures.steady_error) <= LOST * abs(self.amplitude)
+        return max(abs(self.figures.steady_error), self.figures.ripple) <= LOST * abs(
+            self.amplitude)
 
 
 def step(rig: Rig, duration: float, amplitude: float | None = None) -> StepResponse:
@@ -104,14 +108,25 @@ def evaluate(
     """Return a step of a reference that stood at ``start``, at row ``before`` > 0 of a trace."""
     output = trace[loop.name]
     t = (np.arange(len(output)) - before) / rate
-    standing = start - float(output[before - max(1, round(TAIL * before)):before].mean())
-    if abs(standing) <= BAND * abs(amplitude):
-        standing = 0.0
+    standing = _standing_error(t[:before], output[:before], start, BAND * abs(amplitude))
     start -= standing
     return StepResponse(
         loop, amplitude, t, trace[f'{loop.name}_reference'], output,
         None if loop.inward is None else trace[loop.inward],
         step_figures(t[before:], output[before:], start, start + amplitude, BAND), standing)
+
+
+def _standing_error(t: np.ndarray, output: np.ndarray, start: float, band: float) -> float:
+    """Return ``start`` less the output at t = 0, by the half of the time before it; 0.0: none."""
+    t, output = t[len(t) // 2:], output[len(t) // 2:]
+    drift = _drift(t, output)
+    standing = start - float(drift(0.0))
+    return 0.0 if np.ptp(output - drift(t)) > band or abs(standing) <= band else standing
+
+
+def _drift(t: np.ndarray, output: np.ndarray) -> np.polynomial.Polynomial:
+    """Return the straight line through an output."""
+    return np.polynomial.Polynomial.fit(t, output, min(1, len(t) - 1))
 
 
 def summary(measured: StepResponse) -> str:
@@ -131,7 +146,7 @@ def summary(measured: StepResponse) -> str:
     if measured.standing_error:
         side = 'short of' if measured.standing_error * measured.amplitude > 0.0 else 'beyond'
         lines.append(
-            f'before the step it stood {abs(measured.standing_error) / unit.scale:.3g} '
+            f'at the step it was {abs(measured.standing_error) / unit.scale:.3g} '
             f'{unit.symbol} {side} its reference: all figures are of the change from there')
     if not measured.follows:
         lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '

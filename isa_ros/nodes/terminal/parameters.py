@@ -1,6 +1,6 @@
 """Read and set ROS parameters of a node: gains and limits of an actuator."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.tunable import changing
@@ -123,16 +123,18 @@ def _values(visitor: Visitor, path: str, changes: Sequence[ParameterChange]) -> 
         for name in names:
             if name not in known:
                 raise ConfigError(f'{path}: parameter {name} ' + (
-                    'does not change during a run; it is a key of the run file, and of --set'
-                    if _is_key(name) else f'is unknown; {alternatives(name, known)}'))
+                    'does not change during a run; where the model has it, it is a key of the run '
+                    'file, and of --set'
+                    if _is_key(name, known) else f'is unknown; {alternatives(name, known)}'))
     return [parameter_value_to_python(value) for value in found]
 
 
-def _is_key(name: str) -> bool:
-    """Return whether a packaged model has such a parameter, and none may change it."""
+def _is_key(name: str, known: Collection[str]) -> bool:
+    """Return whether a model has such a parameter, which none changes; ``known`` a node's own."""
     sheets = [default_actuator(model, model).sheet for model in model_names()]
-    return any(_has(own, name.split('.')) for own in sheets) and not any(
-        name == each.key for own in sheets for each in changing(own).values())
+    may_change = {each.key for own in sheets for each in changing(own).values()}
+    return name not in may_change and not may_change.isdisjoint(known) and any(
+        _has(own, name.split('.')) for own in sheets)
 
 
 def _has(own: object, path: Sequence[str]) -> bool:

@@ -93,6 +93,15 @@ def test_a_swing_is_as_large_beside_a_drift_a_step_and_a_pulse(beside):
     assert said.endswith(' Hz, 2.5 % of the range of its sensor.')
 
 
+@pytest.mark.parametrize('phase', np.linspace(0.0, 2.0 * np.pi, 9))
+@pytest.mark.parametrize(('hertz', 'drift'), [(30.0, 40.0), (25.0, 40.0), (50.0, -100.0)])
+def test_a_swing_beside_a_drift_is_as_large_wherever_it_begins(hertz, drift, phase):
+    """Of a sine: a way up is longer by the drift of half a period, a way down shorter."""
+    sine = 10.0 * np.sin(2.0 * np.pi * hertz * FINE + phase)
+    size, found = swing_at_end(Signal(FINE, sine + 10.0 * drift * FINE), 1.0)
+    assert size == pytest.approx(10.0, rel=0.06) and found == pytest.approx(hertz, rel=0.15)
+
+
 def test_a_swing_of_the_whole_range_is_told_without_an_exponent():
     said, = swings(150.0 * WAVE)
     assert said.endswith('150 % of the range of its sensor.')

@@ -97,6 +97,33 @@ def test_what_follows_a_motion_that_goes_on_is_not_blamed():
     assert told(0.08 - wave).text == 'Still moving at the end: ram.'        # the other way
 
 
+@pytest.mark.parametrize(('off', 'motion', 'follows'), [
+    (0.0, 1.45, True), (0.0, 1.55, False), (0.0, 0.55, True), (0.0, 0.45, False),
+    (0.0, -1.0, False), (0.0124, 1.0, True), (0.0127, 1.0, False)])
+def test_an_early_step_does_not_make_another_motion_the_same(off, motion, follows):
+    """A reference of 40 mm and then 10 mm more at 100 mm/s: by the motion and by the distance."""
+    drift = 0.1 * np.maximum(T - 0.9, 0.0)
+    wanted = np.where(T < 0.1, 0.02, 0.06) + drift
+    position = np.where(T < 0.1, 0.02, 0.06) + off + motion * drift
+    found = verdict(signals(position=position, position_reference=wanted), [], [], '')[-1]
+    assert found.text.startswith('Moving at the end' if follows else 'Still moving')
+
+
+@pytest.mark.parametrize(('span', 'position', 'said', 'grade'), [
+    (0.9e-3, 1e-5, 'Stood: ram within 0.001 mm.', GOOD),
+    (1.1e-3, 1e-5, 'Stood while its reference moved: ram within 0.001 mm.', NOTE),
+    (1.1e-3, 0.0, 'Did not move while its reference moved: ram.', NOTE),
+    (0.9e-3, 0.0, 'Did not move: ram.', GOOD)])
+def test_what_stood_instead_of_moving_is_told(span, position, said, grade):
+    """As a load that is too heavy for its stiffness; by the bound of standing."""
+    stroke = SHEET.plant.drive.stroke
+    own = signals(position=0.04 + position * stroke * T,
+                  position_reference=0.04 + span * stroke * T)
+    assert verdict(own, [], [], '')[-1] == (grade, said)
+    off = verdict(own, [], [Band('ram', 0.0, 1.0, 'disabled')], '')[-1]
+    assert 'reference' not in off.text      # which explains it
+
+
 def test_what_moves_or_stands_without_its_device_is_told():
     """A runaway is no motion that follows, and a load that holds itself none that is held."""
     wave, off = 0.04 + 0.01 * np.sin(2.0 * np.pi * 2.0 * T), [Band('ram', 0.0, 1.0, 'fault')]

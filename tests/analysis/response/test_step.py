@@ -40,7 +40,7 @@ def test_figures_count_from_where_the_step_begins(start: float) -> None:
     (-0.03, 0.01, '0.03 m beyond')])
 def test_a_standing_error_is_told_and_not_among_the_figures(
         off: float, amplitude: float, told: str) -> None:
-    """From 5 % of the step on: of less it is a part of the figures. It sinks 1 mm before."""
+    """From 5 % of the step on: of less it is a part of the figures. It sank 1 mm at first."""
     ramp = np.clip((np.arange(220) - BEFORE) / RISES, 0.0, 1.0)
     output = 0.05 - off + amplitude * ramp
     output[:BEFORE // 2] += 0.001
@@ -49,9 +49,36 @@ def test_a_standing_error_is_told_and_not_among_the_figures(
     assert found.standing_error == pytest.approx(off if told else 0.0, abs=1e-15)
     assert found.figures.steady_error == pytest.approx(0.0 if told else off, abs=1e-15)
     assert found.follows and found.figures.rise_time == pytest.approx(8e-3, rel=1e-9)
-    lines = [line for line in summary(found).splitlines() if line.startswith('before the step')]
-    assert lines == ([f'before the step it stood {told} its reference: all figures are of the '
+    lines = [line for line in summary(found).splitlines() if line.startswith('at the step')]
+    assert lines == ([f'at the step it was {told} its reference: all figures are of the '
                       'change from there'] if told else [])
+
+
+@pytest.mark.parametrize(('swing', 'drift', 'standing'), [
+    (0.00035, 0.0, 0.002), (0.00055, 0.0, 0.0), (0.0, 0.2, 0.002), (0.00035, -0.2, 0.002)])
+def test_what_swings_before_a_step_has_no_standing_error(
+        swing: float, drift: float, standing: float) -> None:
+    """By more than 5 % of the step from peak to peak; of a drift it is where the step finds it."""
+    rows = np.arange(220)
+    before = drift * (rows - BEFORE) / RATE + swing * (rows % 2 - 0.5)
+    trace = {'position': 0.048 + np.where(rows < BEFORE, before, 0.01),
+             'position_reference': np.where(rows < BEFORE, 0.05, 0.06)}
+    found = evaluate(loop(actuator_sheet('isa_v5')), trace, BEFORE, 0.05, 0.01, RATE)
+    assert found.standing_error == pytest.approx(standing, abs=max(1e-15, 0.2 * swing))
+
+
+@pytest.mark.parametrize(('size', 'drift', 'swings', 'follows'), [
+    (0.0049, 0.0, False, True), (0.0051, 0.0, True, False), (0.0, 1.8, False, False),
+    (0.0051, 1.8, True, False)])
+def test_a_drift_is_no_swing(size: float, drift: float, swings: bool, follows: bool) -> None:
+    """Of 10 mm, by a deviation of less or more than half of it; a drift in m/s of 36 mm."""
+    rows = np.arange(220)
+    late = np.maximum(rows - 200, 0) / RATE
+    output = np.where(rows < BEFORE, 0.0, 0.01 + size * (-1.0) ** rows) + drift * late
+    trace = {'position': output, 'position_reference': np.where(rows < BEFORE, 0.0, 0.01)}
+    found = evaluate(loop(actuator_sheet('isa_v5')), trace, BEFORE, 0.0, 0.01, RATE)
+    assert (found.swings, found.follows) == (swings, follows)
+    assert ('does not follow' in summary(found)) is not follows
 
 
 @pytest.mark.parametrize(('load', 'amplitude', 'is_refused'), [

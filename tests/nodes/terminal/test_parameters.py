@@ -45,5 +45,10 @@ def test_what_a_value_must_be_is_told_with_its_meaning(known, value, expected):
     ('reu.force.kp', False), ('reu.position.stiffness', False), ('plant.spool.stuck', False),
     ('reu.force.rate_hz', True), ('', False)])
 def test_a_key_of_the_run_file_alone_is_told_apart_from_what_may_change(name, expected):
-    """A gain changes where its block is on; where it is off it is unknown."""
-    assert _is_key(name) is expected
+    """
+    A gain changes where its block is on; where it is off it is unknown.
+
+    A node without gains, as the coordinator, has no keys of actuators.
+    """
+    assert _is_key(name, ['use_sim_time', 'reu.force.kp']) is expected
+    assert not _is_key(name, ['use_sim_time', 'config_file'])
