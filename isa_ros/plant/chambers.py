@@ -112,6 +112,20 @@ def volumes(s, chambers):
 
 
 @kernel
+def filling(y, v, chambers):
+    """
+    Return which share of its displacement a motor takes in as oil, 1: all of it  (M9).
+
+    1 - D/V_p of a cavity D at its inlet; of a piston, which sweeps its own volume, 1. ``y`` is a
+    `CHAMBERS_STATE`.
+    """
+    if chambers.swept_a > 0.0:
+        return 1.0
+    cavity = y.cavity_a if v > 0.0 else y.cavity_b
+    return 1.0 - max(0.0, cavity) / chambers.dead_volume
+
+
+@kernel
 def external_leakage(p, c_le):
     """Return C_le max(0, P), the leakage from a chamber to the outside, in m3/s  (C13)."""
     return c_le * max(0.0, p)

@@ -27,11 +27,13 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     series with a chamber's where a land smooths its flow (V18).
     """
     s, v = y.mechanics.position, y.mechanics.velocity
+    filling = chambers.filling(y.chambers, v, plant.chambers)
     valve_rates(y, drive, p_s, p_t, plant, rates)
     oil_a, oil_b = port_contents(y, s, of_volumes, plant)
     q_a, q_b, q_p, q_t, stored, spilt = line_flows(
-        y, oil_a, oil_b, v, p_s, p_t, per_s, plant, rates, counts, powers)
-    in_a, in_b = chambers.surpluses(q_a, q_b, oil_a[0], oil_b[0], v, plant.chambers)
+        y, oil_a, oil_b, filling * v, p_s, p_t, per_s, plant, rates, counts, powers)
+    in_a, in_b = chambers.surpluses(
+        q_a, q_b, oil_a[0], oil_b[0], filling * v, plant.chambers)
     in_a, in_b, push, lost, kept, wider_a, wider_b = cushion.pass_spears(
         y.cushion, s, v, (*oil_a, in_a), (*oil_b, in_b), plant, rates.cushion)
     out_a, out_b, vent, returned, push, kept = outlets(
@@ -40,7 +42,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         of_volumes, in_a - out_a, in_b - out_b, oil_a, oil_b, v, wider_a, wider_b,
         plant.chambers, rates.chambers)
     f_sensor, f_friction, f_stop = moving_rates(
-        s, v, y.friction.bristle, x_load, v_load, oil_a[0], oil_b[0], push, plant, rates)
+        s, v, y.friction.bristle, x_load, v_load, oil_a[0], oil_b[0], filling, push, plant, rates)
     if counts:
         count_oil(oil_a[0], oil_b[0], p_t, vent, in_a, in_b, out_a, out_b, lost, kept, plant,
                   powers)
@@ -102,12 +104,12 @@ def outlets(s, v, p_t, oil_a, oil_b, push, kept, plant):
 
 
 @kernel
-def moving_rates(s, v, z, x_load, v_load, p_a, p_b, push, plant, rates):
+def moving_rates(s, v, z, x_load, v_load, p_a, p_b, filling, push, plant, rates):
     """
     Write the rates of piston and bristles; return the forces of sensor, friction and stop, N.
 
-    I s'' = f_h - f_friction - f_sensor + f_stop  (M4); ``push`` is what a spear and a return
-    spring add to f_h. ``z`` is the deflection of the bristles.
+    I s'' = f_h - f_friction - f_sensor + f_stop  (M4); f_h times the ``filling`` of a motor  (M9),
+    with ``push`` of a spear and a return spring. ``z`` is the deflection of the bristles.
     """
     z_rate = friction.bristle_rate(v, z, plant.friction)
     rates.friction.bristle = z_rate
@@ -116,7 +118,7 @@ def moving_rates(s, v, z, x_load, v_load, p_a, p_b, push, plant, rates):
     f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
     rates.mechanics.position = v
     rates.mechanics.velocity = (
-        chambers.hydraulic_force(p_a, p_b, plant.chambers) + push - f_friction - f_sensor
+        filling * chambers.hydraulic_force(p_a, p_b, plant.chambers) + push - f_friction - f_sensor
         + f_stop
     ) / plant.mechanics.inertia
     return f_sensor, f_friction, f_stop

@@ -17,9 +17,14 @@ import numpy as np
 
 
 def largest_flow_slope(valve: np.record, span: float) -> float:
-    """Return dQ/dP of the wide-open valve with ``span`` (Pa) over two lands, in m3/s/Pa."""
-    flow = flow_curve(valve.x_max, valve) * math.sqrt(0.5 * span) * valve.per_root_drop
-    return float(0.5 * flow / span)
+    """
+    Return dQ/dP of the wide-open valve with ``span`` (Pa) over two lands, in m3/s/Pa.
+
+    A supply below the return has a negative one, through which oil flows the other way.
+    """
+    drop = abs(span)
+    flow = flow_curve(valve.x_max, valve) * math.sqrt(0.5 * drop) * valve.per_root_drop
+    return float(0.5 * flow / drop)
 
 
 @kernel

@@ -7,16 +7,16 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.integration import integrated, rk4_steps
 from isa_ros.actuator.sheet import actuator_record, refuse_wiring
 from isa_ros.core.record import row_record
-from isa_ros.core.signals import COMMAND, HAS_QUICK_STOP, LOAD_PORT, SUPPLY_PORT
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_QUICK_STOP, LOAD_PORT, SUPPLY_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.plant.chambers import lack_rates, volumes
+from isa_ros.plant.chambers import CHAMBERS_STATE, filling, lack_rates, volumes
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.sheet_fit import fits
 import numpy as np
 import pytest
 from tests.actuator.energy import account, CLOSES, remainder
-from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, override, request, setpoint, smart_actuator
 
 SHEET = actuator_sheet('hydraulic_motor')
 MOTOR = SHEET.plant.drive
@@ -83,6 +83,66 @@ def test_its_chambers_neither_grow_nor_shrink():
         assert volumes(angle, oil) == pytest.approx((40e-6, 40e-6), rel=1e-12, abs=0.0)
     assert lack_rates(1e-4, -2e-4, 0.01, 0.02, 50.0, oil) == pytest.approx(
         (-1e-4 * 1.01, 2e-4 * 1.02), rel=1e-12, abs=0.0)
+
+
+def test_of_what_it_displaces_it_takes_in_what_is_oil():
+    """M9: by the cavity at the inlet of either direction; a piston sweeps what it sweeps."""
+    oil = row_record(plant_record(SHEET.plant)).chambers
+    y = row_record(np.zeros(1, CHAMBERS_STATE))
+    y.cavity_a, y.cavity_b = 10e-6, 30e-6
+    assert filling(y, 2.0, oil) == pytest.approx(0.75, rel=1e-12, abs=0.0)
+    assert filling(y, -2.0, oil) == pytest.approx(0.25, rel=1e-12, abs=0.0)
+    y.cavity_a = -1e-6      # within a step: it is compressed
+    assert filling(y, 2.0, oil) == 1.0
+    piston = row_record(plant_record(actuator_sheet('isa_v5').plant)).chambers
+    assert filling(y, -2.0, piston) == 1.0
+
+
+@pytest.mark.parametrize('speed', [30.0, -30.0])
+def test_a_starved_motor_pumps_no_oil_that_it_has_not(speed):
+    """
+    M9: driven by its load with a valve that shuts tight, the inlet empties as exp(-D w t/V_p).
+
+    And what turns it against the relief valve is what it still pumps.
+    """
+    constants = actuator_record(SHEET, 0)
+    plant = constants[0]['plant']
+    plant['valve']['q_0'], plant['chambers']['c_li'] = 0.0, 0.0
+    plant['valve']['leak_factor'], plant['relief']['c_refill'] = 0.0, 0.0
+    port = np.zeros(1, LOAD_PORT)
+    integration = integrated(port[0], np.zeros(1, SUPPLY_PORT)[0], constants[0])
+    state = row_record(integration.continuous)
+    port['v0'] = speed
+    state.load.velocity = state.plant.mechanics.velocity = speed
+    empty, full = ('cavity_a', 'p_b') if speed > 0.0 else ('cavity_b', 'p_a')
+    own, torques = state.plant.chambers, []
+    for k in range(1, 6):
+        state.totals.impulse = 0.0
+        rk4_steps(5000, PLANT_STEP, 0.0, integration)
+        torques.append(abs(float(state.totals.impulse)) / 0.1)
+        left = 40e-6 - float(getattr(own, empty))
+        assert left == pytest.approx(40e-6 * math.exp(-D * 30.0 * 0.1 * k / 40e-6), rel=0.02)
+    assert float(getattr(own, full)) > 20e6     # of the relief valve
+    losses = MOTOR.losses()
+    least = losses.coulomb + SHEET.plant.friction.coulomb + losses.viscous * 30.0
+    assert min(torques) > least and torques[-1] - least < 0.02 * (torques[0] - least)
+
+
+def test_the_account_of_a_motor_with_a_cavity_closes():
+    """The load turns it on behind a shut valve, hardly refilled, and then rolls back."""
+    sheet = override(SHEET, 'plant.relief.refill_lpm', 0.1)
+    found = smart_actuator('hydraulic_motor', 'mass', sheet=sheet, position=3.0)
+    follow(found, 70.0, share=0.5)
+    found.accept(request(HAS_ENABLE, 0))
+    speeds, cavities = [], []
+    for _ in range(3000):
+        found.tick()
+        speeds.append(float(found.reply.velocity))
+        cavities.append((float(found.sample.cavity_a), float(found.sample.cavity_b)))
+    assert max(speeds) > 17.0 and min(speeds) < -1.0
+    largest = np.max(cavities, axis=0)
+    assert largest[0] > 8e-6 and largest[1] > 0.5e-6
+    assert remainder(account(found)) < CLOSES
 
 
 def test_it_has_no_end_stop():

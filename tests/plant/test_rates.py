@@ -88,14 +88,14 @@ def test_the_piston_has_the_sum_of_all_forces() -> None:
     plant, (_, rates) = plant_row('isa_v5'), states()
     s, v, z = -2e-5, -0.03, 1e-6        # in the stop at the retracted end
     sensor, rubs, stop = of.moving_rates(
-        s, v, z, s - 3e-6, -0.02, 4e6, 2e6, 123.0, plant, rates)
+        s, v, z, s - 3e-6, -0.02, 4e6, 2e6, 0.75, 123.0, plant, rates)
     own = plant.mechanics
     assert sensor == pytest.approx(own.k_s * 3e-6 + own.d_s * -0.01, rel=1e-9)
     assert stop == pytest.approx(own.k_stop * 2e-5 + own.d_stop * 0.03, rel=1e-9)
     oil = 4e6 * plant.chambers.area_a - 2e6 * plant.chambers.area_b
     assert rates.mechanics.position == v
     assert rates.mechanics.velocity * own.inertia == pytest.approx(
-        oil + 123.0 - rubs - sensor + stop, rel=1e-12)
+        0.75 * oil + 123.0 - rubs - sensor + stop, rel=1e-12)
     assert rubs < 0.0 and rates.friction.bristle != 0.0
 
 

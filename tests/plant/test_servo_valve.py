@@ -232,3 +232,12 @@ def test_compiled_flows_equal_their_python_source(x, p_a, p_b):
     """Replay depends on this: the compiler must not reorder a single rounding."""
     args = (x, p_a, p_b, SUPPLY, 0.0, ISA_V5)
     assert servo_valve.port_flows(*args) == servo_valve.port_flows.py_func(*args)
+
+
+def test_a_supply_below_the_return_has_the_slope_of_the_way_back():
+    """dQ/dP = Q/(2 dP) of both lands wide open: 0.7 MPa lets pass 5 times as much as 0.028."""
+    valve = MANIFOLD
+    found = [servo_valve.largest_flow_slope(valve, span) for span in (0.7e6, -0.7e6, -0.028e6)]
+    flow = valve.per_root_drop * servo_valve.flow_curve(valve.x_max, valve) * 0.35e6 ** 0.5
+    assert found[0] == found[1] == pytest.approx(0.5 * flow / 0.7e6, rel=1e-12, abs=0.0)
+    assert found[2] == pytest.approx(5.0 * found[0], rel=1e-12, abs=0.0)

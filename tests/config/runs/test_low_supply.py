@@ -97,3 +97,13 @@ def test_of_a_circuit_it_is_what_its_relief_valve_leaves(
     if held is not None:
         assert found[0].startswith(
             f'cooled_station.yaml: station holds {held} MPa < 11 MPa: cylinder will warn ')
+
+
+def test_below_the_return_the_oil_flows_the_other_way() -> None:
+    """0.2 MPa beside 3: what an actuator draws is less than nothing."""
+    run = isa_ros.load('rig_linear', changes={
+        'supply.pressure_mpa': 0.2, 'supply.return_pressure_mpa': 3.0})
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore')
+        found = run.simulate(0.05)
+    assert found['ram.supply_volume'][-1] < 0.0 < found['ram.pressure_a'][-1] < 3e6
