@@ -92,7 +92,7 @@ def assert_no_trips(run: Result | Path | str) -> None:
     AssertionError
         Has a line for each condition that tripped.
     BagError
-        The bag cannot be read.
+        The bag cannot be read, or was cut short.
 
     """
     __tracebackhide__ = True
@@ -101,7 +101,7 @@ def assert_no_trips(run: Result | Path | str) -> None:
         tripped.add(run.trips)
         name = repr(run)
     else:
-        bag = Bag(Path(run))
+        bag = _whole(run)
         own = recorded_run(bag.provenance.configuration, f'{run}: {CONFIGURATION}').run
         tripped.add(trips_in(own, history_of(bag, own)))
         name = str(run)
@@ -120,11 +120,12 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
         The replay differs; the message has the first tick, topic and field with both values, and
         the differences between this installation and the one that recorded the bag.
     BagError, ConfigError
-        The bag or the tolerance file cannot be read, or the bag cannot be simulated.
+        The bag or the tolerance file cannot be read, or the bag was cut short or cannot be
+        simulated.
 
     """
     __tracebackhide__ = True
-    recorded = Bag(Path(bag))
+    recorded = _whole(bag)
     report = replay(recorded, _tolerances(recorded, tolerances))
     if not report.is_equal:
         lines = [f'{bag}: {report}', *report.changes]
@@ -155,13 +156,13 @@ def assert_reproduces(
         with both values and unit, then the first difference, then the largest deviation of each
         topic with field, tick, values and tolerance.
     BagError, ConfigError
-        A file cannot be read or run, or the bag does not begin at t = 0.
+        A file cannot be read or run, or the bag was cut short or does not begin at t = 0.
     RunError
         The caller's body fails.
 
     """
     __tracebackhide__ = True
-    recorded = Bag(Path(bag))
+    recorded = _whole(bag)
     allowed = _tolerances(recorded, tolerances)
     if recorded.end_ns is None or recorded.provenance.state is not None:
         lacks = 'has no samples' if recorded.end_ns is None else 'continues a saved state'
@@ -205,6 +206,23 @@ def _assert_replays() -> AssertReplays:
 def _assert_reproduces() -> AssertReproduces:
     """Return `assert_reproduces`."""
     return assert_reproduces
+
+
+def _whole(bag: Path | str) -> Bag:
+    """
+    Return a bag: the part of one that is there would pass a test that the rest does not.
+
+    Raises
+    ------
+    BagError
+        It cannot be read, or was cut short.
+
+    """
+    found = Bag(Path(bag))
+    if not found.is_whole:
+        raise BagError(f'{bag}: is cut short, by a recorder that was killed or a copy that was '
+                       'not finished; isa recover completes what is there')
+    return found
 
 
 def _tolerances(bag: Bag, tolerances: Path | str | None) -> Tolerances | None:

@@ -1,5 +1,6 @@
 """`isa_ros.testing` in a user's project: a conftest.py, a test, a bag and tolerances."""
 
+import os
 from pathlib import Path
 import re
 import shutil
@@ -70,6 +71,21 @@ def test_a_bag_that_is_missing_is_one_line_without_the_frames_of_its_reader(proj
     text = '\n'.join(result.outlines)
     assert 'BagError: bags/drop' in text and 'isa_ros/bag' not in text
     assert text.count('def own(assert_reproduces)') == 1
+
+
+@pytest.mark.parametrize('check', [
+    "assert_no_trips('bags/drop')", "assert_replays('bags/drop')",
+    "assert_reproduces('leg.yaml', None, 'bags/drop')"])
+def test_a_bag_that_is_cut_short_passes_nothing(project, here, check):
+    """Two thirds of one, as a recorder that was killed leaves."""
+    shutil.copytree(here, project.path / 'bags' / 'drop')
+    file, = (project.path / 'bags' / 'drop').glob('*.mcap')
+    os.truncate(file, file.stat().st_size * 2 // 3)
+    name = check.partition('(')[0]
+    project.makepyfile(f'def test_it({name}):\n    {check}\n')
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(['*BagError: bags/drop: is cut short, by a recorder that*'])
 
 
 def test_a_file_that_is_missing_or_wrong_is_one_line_too(project, here):

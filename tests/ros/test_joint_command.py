@@ -18,6 +18,7 @@ from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.tick.exchange import Rows
 from msg_adapters.cdr_reader import decode
 import pytest
+from rcl_interfaces.msg import Log
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
@@ -69,6 +70,14 @@ def test_a_message_moves_the_joints_that_it_names(commanded):
         assert requests['position'][row] == actuator_coordinate(angle, JOINTS[name].linkage)[0]
     assert math.isnan(requests['stiffness'][0]) and requests['stiffness'][2] > 0.0
     assert requests['effort'][2] == 0.0
+    stiffness = float(requests['stiffness'][2])
+    take(JointState(name=['kfe_joint', 'kfe_joint/damping'], position=[-1.7, 3.0]))
+    assert requests['stiffness'][2] == stiffness and requests['damping'][2] > 0.0
+    take(JointState(name=['kfe_joint', 'kfe_joint/stiffness'], position=[-1.7, 100.0]))
+    assert 0.0 < requests['stiffness'][2] < stiffness and requests['damping'][2] > 0.0
+    run.ticks = 8       # they were taken
+    take(JointState(name=['kfe_joint'], position=[-1.5]))
+    assert requests['stiffness'][2] == pytest.approx(0.5 * stiffness)   # of a scenario, say
 
 
 def test_in_mode_force_torques_alone_are_a_setpoint(commanded):
@@ -190,6 +199,14 @@ def test_a_paused_leg_is_commanded_for_its_next_tick_and_replays(observer, tmp_p
         applied: list[JointState] = []
         observer.create_subscription(
             JointState, '/hfe/applied_setpoint', applied.append, 10)
+        told: list[Log] = []
+        observer.create_subscription(Log, '/rosout', told.append, 10)
+        spinning.wait_for(lambda: 'coordinator' in {
+            own.node_name for own in observer.get_publishers_info_by_topic('/rosout')}, 'its log')
+        publisher.publish(JointState(name=['foo'], position=[0.6]))
+        spinning.wait_for(lambda: any(
+            own.name == 'coordinator' and 'setpoint names foo, must name joints' in own.msg
+            for own in told), 'the reason')
         of_leg = dict(observer.get_topic_names_and_types())
         for topic in TOPICS_OF_CONTROL:
             assert of_leg[topic] == ['sensor_msgs/msg/JointState']

@@ -5,7 +5,7 @@ Each has its 95 % interval beside the value of the configuration in the bag. A p
 the data do not determine is refused with the reason.
 """
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 import math
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.core.frozen import frozen
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
+from isa_ros.plant.hose_sheets import LumpedHoses
 from isa_ros.plant.plant import LinearPlant, Plant
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 from isa_ros.text.table import aligned, GAP
@@ -32,6 +33,7 @@ _TOO_SHORT = 'too short: {:.2g} s of the bag can be used'
 _UNSEPARATED = 'the data do not separate it from the others'
 _WITHIN = 'not in the data: the spool stays near null'
 _DATA_SHEET = 'not estimated with the flow curve of a data sheet'
+_HOSES = 'not estimated behind hoses: the sensors read the pressures at the valve'
 _SLIDING = 'not in the data: too little sliding both ways'
 _SLOW = 'not in the data: no slow sliding that shows it'
 
@@ -100,7 +102,8 @@ def identify(recording: Recording, sheet: Plant) -> list[Estimate]:
     """
     Return the estimates of one actuator beside the values of its sheet.
 
-    With the flow curve of a data sheet, which has no few parameters, those of the friction.
+    With the flow curve of a data sheet, which has no few parameters, those of the friction; behind
+    hoses, where the sensors read other pressures than those of the chambers, none.
     """
     if isinstance(sheet.valve, DataSheetValve):
         oil = sheet.oil
@@ -111,7 +114,10 @@ def identify(recording: Recording, sheet: Plant) -> list[Estimate]:
                 ('cross-port leakage', 'm3/s/Pa', oil.cross_port_leakage))]
     else:
         valve_and_oil = _valve_and_oil(recording, sheet)
-    return [*valve_and_oil, *_friction(recording, sheet)]
+    rows = [*valve_and_oil, *_friction(recording, sheet)]
+    if isinstance(sheet.hoses, LumpedHoses):
+        rows = [replace(row, value=None, low=None, high=None, reason=_HOSES) for row in rows]
+    return rows
 
 
 def _valve_and_oil(

@@ -103,8 +103,8 @@ def conclusions(measured: Bode) -> Sequence[str]:
     if own.hysteresis_percent > 0.0:
         lines.append(
             f'the valve has {own.hysteresis_percent:g} % hysteresis: gain and phase are those of '
-            'this amplitude; --set plant.valve.hysteresis_percent=0,'
-            'plant.valve.threshold_percent=0 is the linear response')
+            'this amplitude; --set plant.valve.hysteresis_percent=0 '
+            '--set plant.valve.threshold_percent=0 is the linear response')
     frequency, coherence = measured.response.frequency, measured.response.coherence
     least = int(coherence.argmin())
     if coherence[least] < TRUSTED:

@@ -82,7 +82,7 @@ def step(options: Namespace) -> bool:
         return step_figure(responses, [label for label, _ in benches],
                            title if len(benches) == 1 else f'{options.loop}: step')
     _write(options, found, figure)
-    return not any(measured.swings for measured in responses)
+    return not any(measured.hunts for measured in responses)
 
 
 def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:
@@ -143,7 +143,7 @@ def _step_numbers(measured: steps.StepResponse) -> dict[str, Any]:
         'rise_time_s': found.rise_time, 'overshoot': found.overshoot,
         'settling_time_s': found.settling_time, 'settling_band': steps.BAND,
         'steady_error': found.steady_error / scale, 'ripple': found.ripple / scale,
-        'standing_error': measured.standing_error / scale,
+        'standing_error': measured.standing_error / scale, 'hunts': measured.hunts,
         't_s': measured.t.tolist(), 'reference': (measured.reference / scale).tolist(),
         'output': (measured.output / scale).tolist()}
 

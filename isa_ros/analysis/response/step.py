@@ -1,9 +1,11 @@
 """`isa step`: the step response of one loop, its figures and its signals."""
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
+from isa_ros.analysis.response.at_rest import HUNTS
 from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures, TAIL
+from isa_ros.analysis.signals.swing import Swing, swing
 from isa_ros.core.frozen import frozen
 from isa_ros.errors import ConfigError
 from isa_ros.loads.drop_rig import Wheel
@@ -13,6 +15,7 @@ BEFORE = 0.1                # time before the step over the duration
 SHORTEST_S, LONGEST_S = 0.01, 100.0
 BAND = 0.05                 # settling band over the step
 MOVED = 0.01                # of the travel; an end that is nearer is where it starts
+_DECAYS = 1.25              # of a swing a tenth of the time before; more: it decays
 LOST = 0.5                  # error or ripple at the end over the step; above: it does not follow
 
 
@@ -36,11 +39,20 @@ class StepResponse:
     """
 
     @property
-    def swings(self) -> bool:
-        """Return whether the deviation at the end, drift aside, exceeds `LOST`: it hunts."""
+    def swing(self) -> Swing:
+        """Return the swing of the last tenth, of more than `HUNTS`, that does not decay."""
+        n = round(TAIL * np.count_nonzero(self.t >= 0.0))
+        before, found = (swing(self.t[part], self.output[part], HUNTS * abs(self.amplitude))
+                         for part in (slice(-2 * n, -n), slice(-n, None)))
+        return found if before.size < _DECAYS * found.size else Swing(0.0, 0.0)
+
+    @property
+    def hunts(self) -> bool:
+        """Return whether the output swings on, or drift aside deviates by more than `LOST`."""
         n = round(TAIL * np.count_nonzero(self.t >= 0.0))
         t, output = self.t[-n:], self.output[-n:]
-        return bool((output - _drift(t, output)(t)).std() > LOST * abs(self.amplitude))
+        return self.swing.size > 0.0 or bool(
+            (output - _drift(t, output)(t)).std() > LOST * abs(self.amplitude))
 
     @property
     def follows(self) -> bool:
@@ -148,6 +160,11 @@ def summary(measured: StepResponse) -> str:
         lines.append(
             f'at the step it was {abs(measured.standing_error) / unit.scale:.3g} '
             f'{unit.symbol} {side} its reference: all figures are of the change from there')
+    if measured.swing.size:
+        size, hertz = measured.swing
+        lines.append(
+            f'the loop hunts: at the end it swings by +-{size / unit.scale:.3g} {unit.symbol} at '
+            f'{hertz:.3g} Hz, {100.0 * size / abs(measured.amplitude):.3g} % of the step')
     if not measured.follows:
         lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '
                      'loop does not follow, or the recording is too short')

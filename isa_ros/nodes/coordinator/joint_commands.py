@@ -67,9 +67,12 @@ class JointCommands:
         if self._coordinator.ticks != self._tick:
             self._tick, self._commanded = self._coordinator.ticks, set()
         for row, command in commands.items():
-            if row in self._commanded or not rows.requests['kinds'][row]:
-                self._commanded.add(row)
-                rows.requests[row] = command
+            if row in self._commanded:
+                _keep_gains(command, rows.requests[row])
+            elif rows.requests['kinds'][row]:
+                continue
+            self._commanded.add(row)
+            rows.requests[row] = command
 
     def commands(
             self, message: JointState, body: BodyConfig, rows: Rows
@@ -98,6 +101,13 @@ class JointCommands:
         if not found:
             raise SetpointError('setpoint gives no joint a number, all are NaN')
         return found, '; '.join(filter(None, limited))
+
+
+def _keep_gains(command: np.void, pending: np.void) -> None:
+    """Give a command the gains of one that it replaces, where it has none."""
+    for gain in GAINS_OF_COMMAND:
+        if math.isnan(command[gain]):
+            command[gain] = pending[gain]
 
 
 def _is_empty(message: JointState, name: str, command: np.void) -> bool:

@@ -41,14 +41,15 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.type_support import check_for_type_support
 from rclpy.utilities import try_shutdown
 
-_QUIET = {
-    'use_global_arguments': False, 'enable_rosout': False,
+_OPTIONS = {
+    'use_global_arguments': False,
     'parameter_overrides': [Parameter('start_type_description_service', value=False)],
 }
-"""Options of a bring-up's nodes: nothing can be set from outside."""
+"""
+Of a bring-up's nodes: nothing can be set from outside.
 
-_ACTUATOR = _QUIET | {'enable_rosout': True}
-"""The same of an actuator: who has sent it a setpoint gets the reason of a rejection."""
+They log on `/rosout`, where who has sent a setpoint finds the reason of a rejection.
+"""
 
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
@@ -91,7 +92,7 @@ def _node(namespace: str) -> Iterator[CoordinatorNode]:
     with refusals():
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
-        node = CoordinatorNode(namespace=namespace, **_QUIET)
+        node = CoordinatorNode(namespace=namespace, **_OPTIONS)
         try:
             yield node
         finally:
@@ -175,7 +176,7 @@ def coordinate_locally(
         namespace, name = parted(placed(session.request.namespace, config.name))
         actuators.append(ActuatorNode(
             _resolver(NodeSetup(config, timing, actuator, session.run.accept)), name,
-            has_mailbox=False, namespace=namespace, **_ACTUATOR))
+            has_mailbox=False, namespace=namespace, **_OPTIONS))
     controllers = None
     try:
         look_for_other_coordinator(node)

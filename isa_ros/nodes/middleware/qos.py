@@ -22,8 +22,12 @@ MOVING = _reliable(100)
 FIXED = _reliable(1, DurabilityPolicy.TRANSIENT_LOCAL)
 """Transforms that stay."""
 
-SETPOINT = _reliable(1)
-"""Setpoints: only the newest one is kept."""
+SETPOINT = _reliable(100)
+"""
+Setpoints: all that arrive between two ticks are taken in their order, and the last one wins.
+
+With one place a message that is refused, or is for another joint, would push out a valid one.
+"""
 
 LOCKSTEP = _reliable(64)
 """The private wire: the answers of all participants share one queue."""

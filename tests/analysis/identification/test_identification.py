@@ -199,6 +199,18 @@ tracks:
 """
 
 
+def test_behind_hoses_nothing_is_estimated() -> None:
+    """The sensors are at the valve: the drop of the hoses would be taken for friction."""
+    plant, recorded = actuator_sheet('isa_v5').plant, recording('isa_v5')
+    hoses = load('rig_hoses').configuration.actuators[0].sheet.plant.hoses
+    rows, found = identify(recorded, plant), identify(recorded, replace(plant, hoses=hoses))
+    assert all(row.value is not None for row in rows)
+    assert found == [replace(
+        row, value=None, low=None, high=None,
+        reason='not estimated behind hoses: the sensors read the pressures at the valve')
+        for row in rows]
+
+
 def test_an_actuator_that_stands_is_named_beside_one_that_moves(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The table and the file list it with the reason."""

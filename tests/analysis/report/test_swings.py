@@ -1,7 +1,6 @@
 """Forces that swing where the motion has ended: which are told, and how large they are."""
 
 import isa_ros
-from isa_ros.analysis.report.swings import swing_at_end
 from isa_ros.analysis.report.verdict import NOTE, verdict
 from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
 from isa_ros.reu.wiring import active
@@ -11,7 +10,6 @@ from tests.analysis.report.test_verdict import SHEET, signals, T, texts
 
 REST = 0.05 - 0.01 * np.exp(-T / 0.05)
 SPAN = SHEET.plant.sensors.force_range
-FINE = np.arange(1001) * 1e-3
 WAVE = 0.01 * SPAN * (-1.0) ** np.arange(101)      # +-1 % of the range of the sensor
 
 
@@ -52,29 +50,6 @@ def test_a_step_a_drift_and_a_pulse_are_no_swings():
     assert swings(pulses(92, 93, 94, 97, 98, 99)) == swings(pulses(91, 93, 95)) == []   # it ends
 
 
-@pytest.mark.parametrize('phase', np.linspace(0.0, 2.0 * np.pi, 19))
-def test_a_sine_is_told_from_its_bound_on_wherever_it_begins(phase):
-    """With 3 periods in the last tenth; with 1.4 of them never."""
-    def told(amplitude, hertz=30.0):
-        sine = amplitude * np.sin(2.0 * np.pi * hertz * FINE + phase)
-        return swing_at_end(Signal(FINE, sine), 1.0)
-    assert told(0.99) == told(10.0, 14.0) == (0.0, 0.0)
-    for amplitude in (1.02, 1.5, 1.95, 40.0):
-        size, hertz = told(amplitude)
-        assert size == pytest.approx(amplitude, rel=0.01)
-        assert hertz == pytest.approx(30.0, rel=0.05)
-
-
-def test_what_is_faster_and_smaller_does_not_hide_a_swing():
-    """3 of 200 Hz on 10 of 20 Hz; one that dies away has ended."""
-    sine = 10.0 * np.sin(2.0 * np.pi * 20.0 * FINE)
-    size, hertz = swing_at_end(
-        Signal(FINE, sine + 3.0 * np.sin(2.0 * np.pi * 200.0 * FINE)), 1.0)
-    assert 10.0 < size < 13.0 and hertz == pytest.approx(20.0, rel=0.05)
-    dying = np.where(FINE < 0.9, 0.0, np.exp((0.9 - FINE) / 0.015) * sine)
-    assert swing_at_end(Signal(FINE, dying), 1.0) == (0.0, 0.0)
-
-
 def test_a_valve_without_a_force_loop_swings_as_its_current_is_asked_to():
     """On a fixture, which yields."""
     run = isa_ros.load('rig_valve').configuration
@@ -91,15 +66,6 @@ def test_a_swing_is_as_large_beside_a_drift_a_step_and_a_pulse(beside):
     said, = swings(beside + 2.5 * WAVE)
     assert f' by +-{0.025 * SPAN:.3g} N at ' in said
     assert said.endswith(' Hz, 2.5 % of the range of its sensor.')
-
-
-@pytest.mark.parametrize('phase', np.linspace(0.0, 2.0 * np.pi, 9))
-@pytest.mark.parametrize(('hertz', 'drift'), [(30.0, 40.0), (25.0, 40.0), (50.0, -100.0)])
-def test_a_swing_beside_a_drift_is_as_large_wherever_it_begins(hertz, drift, phase):
-    """Of a sine: a way up is longer by the drift of half a period, a way down shorter."""
-    sine = 10.0 * np.sin(2.0 * np.pi * hertz * FINE + phase)
-    size, found = swing_at_end(Signal(FINE, sine + 10.0 * drift * FINE), 1.0)
-    assert size == pytest.approx(10.0, rel=0.06) and found == pytest.approx(hertz, rel=0.15)
 
 
 def test_a_swing_of_the_whole_range_is_told_without_an_exponent():

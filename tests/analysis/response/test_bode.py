@@ -239,7 +239,7 @@ def test_a_step_that_is_not_followed_is_said_so():
     stopped = step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0)
     assert 'does not follow' not in summary(stopped) and stopped.follows
     lost = step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.06, 7000.0)
-    assert 'does not follow' in summary(lost) and not lost.follows and not lost.swings
+    assert 'does not follow' in summary(lost) and not lost.follows and not lost.hunts
 
 
 def test_a_command_whose_step_is_not_followed_answers_no(capsys):

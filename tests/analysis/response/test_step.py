@@ -4,7 +4,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.response.choice import Choice
 from isa_ros.analysis.response.loops import Loop, UserUnit
 from isa_ros.analysis.response.rig import rig
-from isa_ros.analysis.response.step import evaluate, step, summary
+from isa_ros.analysis.response.step import evaluate, step, StepResponse, summary
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -67,18 +67,45 @@ def test_what_swings_before_a_step_has_no_standing_error(
     assert found.standing_error == pytest.approx(standing, abs=max(1e-15, 0.2 * swing))
 
 
-@pytest.mark.parametrize(('size', 'drift', 'swings', 'follows'), [
-    (0.0049, 0.0, False, True), (0.0051, 0.0, True, False), (0.0, 1.8, False, False),
-    (0.0051, 1.8, True, False)])
-def test_a_drift_is_no_swing(size: float, drift: float, swings: bool, follows: bool) -> None:
-    """Of 10 mm, by a deviation of less or more than half of it; a drift in m/s of 36 mm."""
+LATE = np.maximum(np.arange(220) - 200, 0) / RATE
+WAVE = (-1.0) ** np.arange(220)
+
+
+@pytest.mark.parametrize(('more', 'size', 'follows'), [
+    (0.00019 * WAVE, 0.0, True), (0.00021 * WAVE, 0.00021, True),
+    (0.0049 * WAVE, 0.0049, True), (0.0051 * WAVE, 0.0051, False),
+    (1.8 * LATE, 0.0, False), (0.0051 * WAVE + 1.8 * LATE, 0.0051, False)])
+def test_a_loop_that_swings_on_hunts(more: np.ndarray, size: float, follows: bool) -> None:
+    """By more than 2 % of 10 mm; a drift of 36 mm, from 1.8 m/s, is no swing."""
+    found = stepped(0.01 + more)
+    assert found.swing.size == pytest.approx(size, rel=0.08, abs=0.0)
+    assert (found.hunts, found.follows) == (size > 0.0, follows)
+    lines = summary(found).splitlines()
+    assert any('does not follow' in line for line in lines) is not follows
+    told = [line for line in lines if line.startswith('the loop hunts: at the end it swings by')]
+    assert len(told) == (size > 0.0)
+    if size == 0.0049:
+        assert told[0].endswith(' m at 500 Hz, 49 % of the step')
+
+
+@pytest.mark.parametrize(('decay', 'hunts'), [(0.05, False), (0.2, True)])
+def test_a_swing_that_decays_is_none_of_a_loop_that_hunts(decay: float, hunts: bool) -> None:
+    """By a third, or by a tenth, within a tenth of the time."""
+    assert stepped(0.01 + 0.02 * np.exp(-np.arange(220) / RATE / decay) * WAVE).hunts is hunts
+
+
+def test_a_period_that_is_longer_than_the_end_is_noticed_by_its_deviation() -> None:
+    """0.8 of a period of 30 mm in the last tenth."""
+    found = stepped(0.01 + 0.03 * np.sin(2.0 * np.pi * 40.0 * np.arange(220) / RATE))
+    assert found.swing.size == 0.0 and found.hunts and not found.follows
+
+
+def stepped(output: np.ndarray) -> StepResponse:
+    """Return a step of 10 mm, after which there is an output."""
     rows = np.arange(220)
-    late = np.maximum(rows - 200, 0) / RATE
-    output = np.where(rows < BEFORE, 0.0, 0.01 + size * (-1.0) ** rows) + drift * late
-    trace = {'position': output, 'position_reference': np.where(rows < BEFORE, 0.0, 0.01)}
-    found = evaluate(loop(actuator_sheet('isa_v5')), trace, BEFORE, 0.0, 0.01, RATE)
-    assert (found.swings, found.follows) == (swings, follows)
-    assert ('does not follow' in summary(found)) is not follows
+    return evaluate(loop(actuator_sheet('isa_v5')), {
+        'position': np.where(rows < BEFORE, 0.0, output),
+        'position_reference': np.where(rows < BEFORE, 0.0, 0.01)}, BEFORE, 0.0, 0.01, RATE)
 
 
 @pytest.mark.parametrize(('load', 'amplitude', 'is_refused'), [
