@@ -14,7 +14,7 @@ from isa_ros.config.runs.run_reading import run_of_text
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import Rerun
-from isa_ros.testing import assert_replays
+from isa_ros.testing import _without_inner_frames, assert_replays
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
 from tests.docs.pages import example, text_of
@@ -77,10 +77,11 @@ def test_a_bag_that_is_missing_is_one_line_without_the_frames_of_its_reader(proj
     "assert_no_trips('bags/drop')", "assert_replays('bags/drop')",
     "assert_reproduces('leg.yaml', None, 'bags/drop')"])
 def test_a_bag_that_is_cut_short_passes_nothing(project, here, check):
-    """Two thirds of one, as a recorder that was killed leaves."""
+    """Though all messages are there, but not the end behind them."""
     shutil.copytree(here, project.path / 'bags' / 'drop')
     file, = (project.path / 'bags' / 'drop').glob('*.mcap')
-    os.truncate(file, file.stat().st_size * 2 // 3)
+    os.truncate(file, file.stat().st_size - 8)
+    assert Bag(file.parent).n_messages > 100
     name = check.partition('(')[0]
     project.makepyfile(f'def test_it({name}):\n    {check}\n')
     result = project.runpytest_inprocess('-q')
@@ -103,6 +104,19 @@ def test_a_file_that_is_missing_or_wrong_is_one_line_too(project, here):
     text = '\n'.join(result.outlines)
     assert 'ConfigError: no.yaml: ' in text and 'ConfigError: wrong.yaml' in text
     assert 'yaml_text.py' not in text and 'composer.py' not in text and 'direct cause' not in text
+
+
+@pytest.mark.parametrize(('module', 'is_hidden'), [('numpy.own', True), ('machine', False)])
+def test_frames_of_a_user_behind_an_error_are_not_hidden(module, is_hidden):
+    """Of the error that an error of a file comes from."""
+    inner = {'__name__': 'isa_ros.own', 'ConfigError': ConfigError}
+    outer = {'__name__': module}
+    exec('def read(): raise ValueError("5")', outer)
+    exec('def check(read):\n try:\n  read()\n except ValueError as error:\n'
+         '  raise ConfigError("bad") from error', inner)
+    with pytest.raises(ConfigError, match='bad') as found:
+        _without_inner_frames(inner['check'])(outer['read'])
+    assert (found.value.__suppress_context__ and found.value.__cause__ is None) is is_hidden
 
 
 def test_an_error_of_a_users_controller_keeps_its_frames(project):

@@ -122,6 +122,14 @@ def test_what_stood_instead_of_moving_is_told(span, position, said, grade):
     assert verdict(own, [], [], '')[-1] == (grade, said)
     off = verdict(own, [], [Band('ram', 0.0, 1.0, 'disabled')], '')[-1]
     assert 'reference' not in off.text      # which explains it
+    fixed = load_blocked().configuration
+    held = Signals(fixed, {name: own.over_time(name) for name in own}, T, 'here')
+    assert 'reference' not in verdict(held, [], [], '')[-1].text    # so does a fixture
+
+
+def load_blocked() -> isa_ros.Run:
+    """Return the rig of the ram with its rod held."""
+    return isa_ros.load('rig_linear', changes={'actuators.ram.load': {'kind': 'blocked'}})
 
 
 def test_what_moves_or_stands_without_its_device_is_told():
@@ -211,11 +219,12 @@ def test_what_was_not_recorded_is_a_dash():
 def test_ripple_is_half_of_peak_to_peak_in_the_last_tenth_of_the_time():
     """Not of the samples, of which a bag has fewer where nothing changed."""
     few = np.concatenate([T[:30], T[-40:]])
-    force = np.where(few < 0.9, 9.0, np.where(np.arange(70) % 2, 4.0, 1.0))
+    force = np.where(np.arange(70) % 2, 4.0, 1.0)
+    force[few < 0.93], force[few < 0.895] = 6.0, 9.0
     row = key_rows(Signals(RUN, {
         'ram.position': Signal(T, np.where(T < 0.5, 0.04, 0.05)),
         'ram.force': Signal(few, force)}, T, 'here'))[1]
-    assert row[11] == '1.5'
+    assert row[11] == '2.5'
 
 
 def test_a_landing_is_the_first_contact_after_the_air():

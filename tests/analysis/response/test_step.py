@@ -91,7 +91,7 @@ def test_a_loop_that_swings_on_hunts(more: np.ndarray, size: float, follows: boo
 @pytest.mark.parametrize(('decay', 'hunts'), [(0.05, False), (0.2, True)])
 def test_a_swing_that_decays_is_none_of_a_loop_that_hunts(decay: float, hunts: bool) -> None:
     """By a third, or by a tenth, within a tenth of the time."""
-    assert stepped(0.01 + 0.02 * np.exp(-np.arange(220) / RATE / decay) * WAVE).hunts is hunts
+    assert stepped(0.01 + 0.012 * np.exp(-np.arange(220) / RATE / decay) * WAVE).hunts is hunts
 
 
 def test_a_period_that_is_longer_than_the_end_is_noticed_by_its_deviation() -> None:
